@@ -5,7 +5,7 @@ import { ink } from './colour'
 import { h, shown } from './dom'
 import { Gumball } from './gumball'
 import { type Link, Newest, Refused } from './link'
-import { model, on } from './state'
+import { type Fault, model, on } from './state'
 import { typed } from './typed'
 import type { Drawn, View } from './view'
 
@@ -109,7 +109,7 @@ export class Hands {
     const c = view.canvas
     on(['faults'], () => {
       const drag = this.drag ?? this.latest
-      if (drag?.said) this.failing(drag)
+      if (drag?.said && (this.drag || this.broken(drag).length)) this.failing(drag)
     })
     c.addEventListener('pointerdown', (e) => this.down(e))
     c.addEventListener('pointermove', (e) => this.move(e))
@@ -433,15 +433,21 @@ export class Hands {
         drag.said = words.join('   ') + lock + (snapped ? ` · on ${snapped}` : '') + why
         this.failing(drag)
       } catch (error) {
-        if (error instanceof Refused && error.message !== 'superseded')
-          this.act.status(`${error.message}. Turn the view, or lock another axis`)
+        if (error instanceof Refused && error.message !== 'superseded') {
+          drag.said = `${error.message}. Turn the view, or lock another axis`
+          this.failing(drag)
+        }
       }
     })
   }
 
+  private broken(drag: Drag): Fault[] {
+    return model.faults.filter((f) => f.severity === 'error' && !drag.faults.has(f.message))
+  }
+
   /** What fails since the drag began, beside what it says of itself. */
   private failing(drag: Drag): void {
-    const broken = model.faults.filter((f) => f.severity === 'error' && !drag.faults.has(f.message))
+    const broken = this.broken(drag)
     const names = [...new Set(broken.map((f) => f.object).filter(Boolean))]
     const few = names.slice(0, 3).join(', ') + (names.length > 3 ? ', …' : '')
     const fails = broken.length
