@@ -167,6 +167,45 @@ def written_blocks(path: Path) -> str:
     return program(written(file, path))[0]
 
 
+@pytest.mark.parametrize("seed", range(4))
+def test_any_map_of_a_block_is_that_of_its_volume(seed: int, tmp_path: Path) -> None:
+    """A ring and a can in blocks, sheared, scaled and mirrored: volume times the determinant."""
+    rng = np.random.default_rng(seed)
+    big, small = rng.uniform(3, 6), rng.uniform(0.5, 2)
+    circle = R.NurbsCurve.CreateFromCircle(R.Circle(point([0, 0, 0]), small))
+    circle.Rotate(math.pi / 2, R.Vector3d(1, 0, 0), point([0, 0, 0]))
+    circle.Translate(R.Vector3d(big, 0, 0))
+    axis = R.Line(point([0, 0, 0]), point([0, 0, 1]))
+    ring = R.Brep.CreateFromRevSurface(
+        R.RevSurface.Create(circle, axis, 0, 2 * math.pi), False, False
+    )
+    can = R.Brep.CreateFromCylinder(R.Cylinder(R.Circle(point([0, 0, 9]), small), 2.0), True, True)
+    exact = 2 * math.pi**2 * big * small**2 + 2 * math.pi * small**2
+    file = file_of()
+    attributes = R.ObjectAttributes()
+    number = file.InstanceDefinitions.Add(
+        "pair", "", "", "", point([0, 0, 0]), (ring, can), (attributes, attributes)
+    )
+    linear = np.eye(3) + rng.uniform(-0.4, 0.4, (3, 3))
+    linear[0] *= (-1) ** seed
+    move = R.Transform(1.0)
+    for i, j in np.ndindex(3, 3):
+        setattr(move, f"M{i}{j}", float(linear[i, j]))
+    move.M23 = -40.0
+    pair = file.InstanceDefinitions[number].Id
+    file.Objects.AddInstanceObject(R.InstanceReference(pair, move), attributes)
+    text, remarks = program(written(file, tmp_path / "moved.3dm"))
+    if remarks:
+        # OCCT misplaces one seam of some rings; then there is no figure.
+        assert seed == 1 and "are not joined" in remarks[0]
+        with pytest.raises(moldloft.ModelError, match="open"):
+            moldloft.loads(text).hydrostatics()
+        return
+    expected = exact * abs(np.linalg.det(linear))
+    assert measured(text)[1] == pytest.approx(expected, rel=1e-6)
+    assert moldloft.loads(text).mesh().volume == pytest.approx(expected, rel=1e-2)
+
+
 @pytest.mark.parametrize(
     ("unit", "metres"),
     [

@@ -4,11 +4,10 @@ use moldloft_num::Vec3;
 use moldloft_num::union_find::UnionFind;
 use std::collections::BTreeMap;
 
-/// A triangle at a side: its number, the number of the side, and the direction of its third corner,
-/// with the component along the side removed.
+/// A triangle at a side: its number, true if it runs from the side's lower vertex to the higher one,
+/// and the direction of its third corner across the side.
 struct Fan {
     triangle: usize,
-    side: usize,
     forward: bool,
     away: Vec3,
 }
@@ -28,8 +27,11 @@ pub(crate) fn parted(
             let axis = (high - low).normalized()?;
             let off = positions[c as usize] - low;
             let away = off - axis * axis.dot(off);
-            let fan = Fan { triangle, side, forward: a < b, away };
-            sides.entry((a.min(b), a.max(b))).or_default().push(fan);
+            sides.entry((a.min(b), a.max(b))).or_default().push(Fan {
+                triangle,
+                forward: a < b,
+                away,
+            });
         }
     }
     if sides.values().all(|round| round.len() == 2) {
@@ -54,12 +56,12 @@ pub(crate) fn parted(
             if !next.forward {
                 return None;
             }
-            let at = |f: &Fan, v: u32| {
-                let t = triangles[f.triangle];
-                3 * f.triangle + (0..3).find(|k| t[*k] == v).unwrap_or(f.side)
+            let corner = |f: &Fan, v: u32| {
+                let at = triangles[f.triangle].iter().position(|w| *w == v)?;
+                Some(3 * f.triangle + at)
             };
             for v in [a, b] {
-                corners.join(at(one, v), at(next, v));
+                corners.join(corner(one, v)?, corner(next, v)?);
             }
         }
         if round.iter().filter(|f| f.forward).count() * 2 != n {

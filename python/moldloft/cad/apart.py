@@ -1,4 +1,4 @@
-"""STEP and IGES files read in a process of their own, bounded in time and memory.
+"""CAD files read in a process of their own, bounded in time and memory.
 
 OCCT can end the process over a damaged file. The faces that it ends over are then found by halves,
 named, and left out; of IGES files it is an error.
@@ -44,7 +44,7 @@ _TRIES = 24
 
 
 def read(path: Path, metres: float) -> Imported:
-    """The faces and curves of a STEP or IGES file; ``metres`` is the length of its unit.
+    """The faces and curves of a CAD file; ``metres`` is the length of its unit.
 
     Parameters
     ----------

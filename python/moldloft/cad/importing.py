@@ -1,4 +1,4 @@
-"""STEP and IGES files as programs, with faces as surfaces that other objects can use."""
+"""CAD files as programs, with faces as surfaces that other objects can use."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ def program(path: str | os.PathLike[str], *, units: str = "m") -> tuple[str, lis
     Parameters
     ----------
     path
-        A STEP or IGES file.
+        A STEP, IGES, 3DM or BREP file.
     units
         The unit of length of the model: m, cm, mm, ft or in. Lengths are converted into it.
 

@@ -159,6 +159,9 @@ class _StepText:
         self.remarks: list[str] = []
         self._left: Counter[str] = Counter()
         self._count = 0
+        self._move: Any = np.eye(4)
+        """From a shape in its block to its position. It is applied to control points: an arc or a
+        surface of revolution of rhino3dm cannot take every map."""
         self.products: dict[str, list[int]] = {}
         self._layers = {layer.Index: layer for layer in file.Layers}
         self._objects = {str(o.Attributes.Id): o for o in file.Objects}
@@ -216,11 +219,12 @@ class _StepText:
                 continue
             name = "" if layer is None else str(layer.FullPath or layer.Name)
             self._object(thing, name or "model", [], None)
-        for what, count in sorted(self._left.items()):
-            self.remarks.append(f"{count} {what} are left out" if count > 1 else _one(what))
+        if self._left:
+            what = ", ".join(f"{name} ({count})" for name, count in sorted(self._left.items()))
+            self.remarks.append(f"left out: {what}")
 
     def _object(self, thing: Any, product: str, moves: list[Any], colour: Any) -> None:
-        """An object at its position: the moves apply from the last to the first."""
+        """An object at its position, the product of the moves."""
         geometry, attributes = thing.Geometry, thing.Attributes
         own = self._colour(attributes) or colour
         if isinstance(geometry, self._rhino.InstanceReference):
@@ -238,10 +242,7 @@ class _StepText:
             raise FileError(
                 f"cannot read the file: its blocks place more than {_MOST_BLOCKS} objects"
             )
-        if moves:
-            geometry = geometry.Duplicate()
-            for move in reversed(moves):
-                geometry.Transform(move)
+        self._move = np.linalg.multi_dot([np.eye(4), np.eye(4), *map(_matrix, moves)])
         name = str(attributes.Name or "")
         try:
             items = list(self._items(geometry, name))
@@ -339,7 +340,8 @@ class _StepText:
             if surface is None or not any(trims for _, trims in own):
                 self.remarks.append(f"a face of `{name or 'an object'}` is left out: no border")
                 continue
-            along = not face.OrientationIsReversed
+            mirrored = np.linalg.det(self._move[:3, :3]) < 0
+            along = face.OrientationIsReversed == mirrored
             bounds = []
             for outer, trims in own:
                 if not trims:
@@ -366,6 +368,7 @@ class _StepText:
         return self._at(np.array([p.X, p.Y, p.Z]))
 
     def _at(self, p: Any) -> int:
+        p = self._move[:3, :3] @ p + self._move[:3, 3]
         return self.add(f"CARTESIAN_POINT('',({','.join(map(_number, p))}))")
 
     def _curve(self, curve: Any, name: str) -> int:
@@ -389,8 +392,10 @@ class _StepText:
         poles, weights = _poles(surface.Points[i, j] for i in range(rows) for j in range(columns))
         u, u_counts = _knots([surface.KnotsU[k] for k in range(len(surface.KnotsU))], p)
         v, v_counts = _knots([surface.KnotsV[k] for k in range(len(surface.KnotsV))], q)
-        if (plane := _plane(poles, weights, (p, q))) is not None:
-            origin, normal, along = plane
+        moved = poles @ self._move[:3, :3].T
+        if (plane := _plane(moved, weights, (p, q))) is not None:
+            normal, along = plane
+            origin = poles[0]
             place = self.add(
                 f"AXIS2_PLACEMENT_3D('',#{self._at(origin)},#{self._direction(normal)},"
                 f"#{self._direction(along)})"
@@ -442,14 +447,8 @@ class _StepText:
         )
 
 
-def _one(what: str) -> str:
-    singular = {
-        "meshes": "a mesh is",
-        "subdivision surfaces": "a subdivision surface is",
-        "points": "a point is",
-        "hidden objects": "a hidden object is",
-    }
-    return f"{singular.get(what, '1 of the ' + what + ' is')} left out"
+def _matrix(move: Any) -> Any:
+    return np.array([[getattr(move, f"M{i}{j}") for j in range(4)] for i in range(4)])
 
 
 def _poles(points: Iterator[Any]) -> tuple[Any, Any]:
@@ -463,8 +462,8 @@ def _poles(points: Iterator[Any]) -> tuple[Any, Any]:
     return poles, None if plain else weights
 
 
-def _plane(poles: Any, weights: Any, degrees: tuple[int, int]) -> tuple[Any, Any, Any] | None:
-    """Origin, normal and first direction of a rectangle, on whose plane trims are exact."""
+def _plane(poles: Any, weights: Any, degrees: tuple[int, int]) -> tuple[Any, Any] | None:
+    """Normal and first direction of a rectangle, on whose plane trims are exact."""
     if degrees != (1, 1) or len(poles) != 4 or weights is not None:
         return None
     u, v = poles[2] - poles[0], poles[1] - poles[0]
@@ -472,7 +471,7 @@ def _plane(poles: Any, weights: Any, degrees: tuple[int, int]) -> tuple[Any, Any
     skew = np.linalg.norm(poles[3] - poles[2] - v) / max(sides)
     if min(sides) == 0 or skew > _RECTANGULAR or abs(u @ v) > _RECTANGULAR * sides[0] * sides[1]:
         return None
-    return poles[0], np.cross(u, v) / (sides[0] * sides[1]), u / sides[0]
+    return np.cross(u, v) / (sides[0] * sides[1]), u / sides[0]
 
 
 def _knots(knots: list[float], degree: int) -> tuple[str, str]:
