@@ -23,6 +23,10 @@ pytestmark = pytest.mark.skipif(os.name == "nt", reason="signals")
 
 SOAK = os.environ.get("MOLDLOFT_SOAK") == "1"
 HULL = (Path(__file__).parents[2] / "examples" / "sailboat" / "hull.sdl").read_text()
+PLATE = """
+AbsPoint A(0, 0, 0); AbsPoint B(1, 0, 0); AbsPoint C(0, 1, 0); AbsPoint D(1, 1, 0.3);
+Line l(A, B); Line k(C, D); RuledSurf s(l, k, divisions = {{{n}, {n}}});
+"""
 BALL = "set s = set(sphere({0,0,0}, 1)); SetBody b(s, {-2,-2,-2}, {2,2,2}, depth = 9);"
 
 
@@ -58,9 +62,7 @@ def rough() -> implicit.Set:
 @cache
 def plate() -> moldloft.Model:
     """A plate of two million panels."""
-    text = "AbsPoint A(0, 0, 0); AbsPoint B(1, 0, 0); AbsPoint C(0, 1, 0); AbsPoint D(1, 1, 0.3);"
-    text += "Line l(A, B); Line k(C, D); RuledSurf s(l, k, divisions = {1400, 1400});"
-    m = moldloft.loads(text)
+    m = moldloft.loads(PLATE.format(n=1400))
     m.mesh()
     return m
 
@@ -83,7 +85,7 @@ WORK: dict[str, Callable[[], Any]] = {
     "objects": loads("for (i = 1:900000) AbsPoint p(i, 0, 0);"),
     "arrays": loads("farray s[2000, 2000]; for (i = 1:1e9) s = sin(s + i);"),
     "a body": loads(BALL),
-    "panels": loads(HULL + "\nRuledSurf zz(MC1, MC3, divisions = {1900, 1900});"),
+    "panels": loads(PLATE.format(n=1900)),
     "a search": lambda: hull()["hull"].nearest(many(9 * 10**6).reshape(-1, 3)),
     "points": lambda: hull()["hull"](many(3 * 10**7), many(3 * 10**7)),
     "points of a curve": lambda: hull()["MC2"](many(3 * 10**7)),
