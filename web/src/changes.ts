@@ -32,7 +32,7 @@ export class Changes {
   /** One after the other: the engine must have what the last one wrote before it writes the next. */
   private writing: Promise<void> = Promise.resolve()
   /** What waits for the hand to rest. */
-  private rests: { name: string; run: () => Promise<void>; timer: number } | null = null
+  private rests: { name: string; run: () => Promise<void>; timer: ReturnType<typeof setTimeout> } | null = null
   private readonly setting: Newest<Record<string, number>>
 
   constructor(
@@ -97,7 +97,7 @@ export class Changes {
   rest(name: string, run: () => Promise<void>): void {
     if (this.rests && this.rests.name !== name) void this.rested()
     if (this.rests) clearTimeout(this.rests.timer)
-    this.rests = { name, run, timer: window.setTimeout(() => void this.rested(), REST) }
+    this.rests = { name, run, timer: setTimeout(() => void this.rested(), REST) }
   }
 
   /** What waits for the hand to rest runs now. */
