@@ -243,7 +243,7 @@ class Hydrostatics:
     @property
     def floods(self) -> bool:
         """True when an open edge is under water."""
-        return self.freeboard is not None and self.freeboard < 0
+        return self.open_edges > 0
 
     @property
     def remarks(self) -> list[str]:

@@ -93,6 +93,52 @@ def test_the_spar_floats_upright_at_its_draft() -> None:
         assert found.gmt > 1 and found.stable
 
 
+@pytest.mark.parametrize("changed", [{}, {"centre": 9, "draft": 24}, {"diameter": 15, "height": 6}])
+def test_semisubmersible(changed: dict[str, float]) -> None:
+    m = model("semisubmersible")
+    for name, value in changed.items():
+        m[name] = value
+    spacing, height, draft = (m[n] for n in ("spacing", "height", "draft"))
+    r, c = m["diameter"] / 2, m["centre"] / 2
+    # A sixth of the pontoons: a trapezium from the middle to the column, and a quarter of a disc.
+    pontoons = 6 * (r * (2 * spacing - r / math.sqrt(3)) / 2 + math.pi * r**2 / 4)
+    columns = math.pi * (3 * r**2 + c**2)
+    inertia = math.pi * (3 * r**4 + c**4) / 4 + 1.5 * math.pi * r**2 * spacing**2
+    h = m.hydrostatics(by=["spacing"])
+    assert not h.remarks and not h.floods and h.freeboard is None
+    assert h.volume == pytest.approx(pontoons * height + columns * (draft - height), rel=1e-12)
+    assert h.waterplane_area == pytest.approx(columns, rel=1e-9)
+    assert h.waterplane_it == pytest.approx(inertia, rel=1e-8)
+    assert h.waterplane_il == pytest.approx(inertia, rel=1e-8)
+    assert abs(h.lcb) < 1e-9 * spacing
+    assert h.derivatives["volume"]["spacing"] == pytest.approx(6 * r * height, rel=1e-9)
+    # Columns are wall-sided: the righting arm is a closed form.
+    heel, centre = math.radians(5), -2.0
+    bm = inertia / h.volume
+    arm = math.sin(heel) * (h.vcb + bm - centre + bm / 2 * math.tan(heel) ** 2)
+    curve = m.righting_curve([heel], h.volume, cg=(0, 0, centre), density=1)
+    assert curve.gz[0] == pytest.approx(arm, rel=1e-8)
+    if not changed:
+        # 20 206 m3 are published.
+        assert round(h.volume) == 20206
+
+
+@pytest.mark.soak
+@pytest.mark.skipif(not SOAK, reason="MOLDLOFT_SOAK=1")
+def test_the_semisubmersible_heaves_as_published() -> None:
+    """A period of 20.4 s, with the published mass of 20 093 t."""
+    capytaine = pytest.importorskip("capytaine")
+    m = model("semisubmersible")
+    body = m.to_capytaine(dofs=False)
+    body.add_translation_dof(name="Heave")
+    problem = capytaine.RadiationProblem(
+        body=body, radiating_dof="Heave", omega=0.3, water_depth=math.inf, rho=1025, g=9.81
+    )
+    added = float(capytaine.BEMSolver().solve(problem).added_masses["Heave"])
+    stiffness = 1025 * 9.81 * m.hydrostatics().waterplane_area
+    assert 2 * math.pi * math.sqrt((20_093e3 + added) / stiffness) == pytest.approx(20.4, abs=0.1)
+
+
 def test_caisson() -> None:
     m = model("caisson")
     for length in (24, 30):

@@ -122,6 +122,13 @@ def test_where_the_water_enters_no_figure_is_given(barge, cli, model_file):
     assert "the water enters over the open edge" in s.summary()
 
 
+def test_a_rim_at_the_level_of_the_water_is_dry(barge):
+    for draft in (H, H * (1 + 1e-12), H * (1 - 1e-12)):
+        afloat = barge.hydrostatics(draft=draft)
+        assert afloat.freeboard == 0 and not afloat.floods and not afloat.remarks
+        assert afloat.volume == pytest.approx(L * B * H, rel=1e-9)
+
+
 BOTTOMLESS = """Model info(symmetry = "y", units = "m");
 AbsPoint a(0,0,0.3); AbsPoint b(4,0,0.3); AbsPoint c(0,0,-0.5); AbsPoint d(4,0,-0.5);
 AbsPoint e(2,0.8,0.3); AbsPoint f(2,0.8,-0.5);

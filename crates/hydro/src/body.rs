@@ -365,18 +365,39 @@ impl<T: Real> Body<T> {
     /// The number of rims that reach below the level, without those in the plane y = 0 for a half
     /// body.
     pub fn open_below(&self, level: f64, half: bool) -> usize {
-        let near = SAME_PLACE * self.size;
+        let near = self.near();
         let low = |r: &&Vec<Vec3<T>>| r.iter().any(|p| p.z.re() < level - near);
-        let aside = |r: &&Vec<Vec3<T>>| !half || r.iter().any(|p| p.y.re().abs() > near);
-        self.rims.iter().filter(low).filter(aside).count()
+        self.rims_of(half).filter(low).count()
     }
 
-    /// The lowest z of the open rims.
-    pub fn lowest_rim(&self) -> Option<T> {
+    /// The distance within which a rim is in a plane.
+    fn near(&self) -> f64 {
+        SAME_PLACE * self.size
+    }
+
+    /// The open rims, without those in the plane y = 0 for a half body.
+    fn rims_of(&self, half: bool) -> impl Iterator<Item = &Vec<Vec3<T>>> {
+        let near = self.near();
+        self.rims.iter().filter(move |r| !half || r.iter().any(|p| p.y.re().abs() > near))
+    }
+
+    /// The height of the lowest open rim over the level, without those in the plane y = 0 for a
+    /// half body; 0 for a rim at the level.
+    pub fn freeboard(&self, level: T, half: bool) -> Option<T> {
+        let height = self.lowest_rim(half)? - level;
+        Some(if height.re().abs() <= self.near() {
+            T::linear(0.0, &[(1.0, height)])
+        } else {
+            height
+        })
+    }
+
+    /// The lowest z of the open rims, without those in the plane y = 0 for a half body.
+    pub fn lowest_rim(&self, half: bool) -> Option<T> {
         let least = |r: &[Vec3<T>]| r.iter().map(|p| p.z.re()).fold(f64::INFINITY, f64::min);
         let mut best: Option<T> = None;
         let mut stack: Vec<(Vec<Vec3<T>>, u32)> =
-            self.rims.iter().map(|r| (r.clone(), 0)).collect();
+            self.rims_of(half).map(|r| (r.clone(), 0)).collect();
         while let Some((row, depth)) = stack.pop() {
             if best.is_some_and(|b| least(&row) >= b.re() - 1e-14 * self.size) {
                 continue;

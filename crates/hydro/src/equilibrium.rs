@@ -289,7 +289,8 @@ impl<'m> EquilibriumProblem<'m, f64> {
         // Slightly above the top, so that panels in the top are submerged.
         let (mut low, mut high) = (bounds.low.z, bounds.high.z + 1e-9 * self.size);
         // An open body displaces no more once its rim is immersed.
-        let full = turned.lowest_rim().map_or(high, |z| z.min(high));
+        let half = self.water.symmetry != Symmetry::None;
+        let full = turned.lowest_rim(half).map_or(high, |z| z.min(high));
         let when_full = volume(full).0;
         let most = if full < high { when_full.max(volume(high).0) } else { when_full } + wanted;
         if wanted > most * (1.0 + 1e-12) {

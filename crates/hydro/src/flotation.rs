@@ -276,7 +276,7 @@ pub fn flotation<T: Real>(
         buoyancy_centre: earth.buoyancy_centre.map(|c| attitude.body_from(c)),
         flotation_centre: plane.map(|p| attitude.body_from(p.centre)),
         drafts,
-        freeboard: turned.lowest_rim().map(|z| z - attitude.level),
+        freeboard: turned.freeboard(attitude.level, symmetry != Symmetry::None),
         weight: earth.displacement * gravity,
         tpc: plane.map(|p| p.area * density * centimetre),
         mtc: plane.and_then(trimming),

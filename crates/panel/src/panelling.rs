@@ -64,10 +64,18 @@ fn check_finite(name: &str, points: &[Vec3]) -> Result<(), CallError> {
         .help(format!("or hide it: {name}(..., visible = 0)")))
 }
 
-/// Distance of an edge, or a whole patch, from a coordinate plane, relative to the model's size,
-/// within which it is in the plane: rounding of a sine must not open a seam or leave slivers at a
-/// plane of symmetry.
+/// Distance of a panel edge, or a whole patch, from a coordinate plane, relative to the model's
+/// size, within which it is in the plane: rounding of a sine must not open a seam or leave slivers
+/// at a plane of symmetry.
 const IN_PLANE: f64 = 1e-12;
+
+/// A point of a patch whose coordinate along an axis is exactly zero.
+#[derive(Clone, Copy, Debug)]
+struct Zero {
+    patch: u32,
+    point: u32,
+    axis: u8,
+}
 
 /// The vertices and the patches that compute them; independent of the scalar.
 #[derive(Clone, Debug)]
@@ -82,8 +90,8 @@ pub struct Panelling {
     /// as evaluated, and with exact zeros.
     raw: Vec<Arc<Vec<Vec3>>>,
     pub(crate) points: Vec<Arc<Vec<Vec3>>>,
-    /// Parts of patches whose coordinate is exactly zero: patch, edge (4 for all of it), axis.
-    zeros: Vec<(u32, u8, u8)>,
+    /// Points whose coordinate is exactly zero.
+    zeros: Vec<Zero>,
     /// Point objects whose parameters divide edges, by their identity where this was made.
     pub(crate) names: Arc<HashMap<Key, Arc<str>>>,
     remarks: Vec<PanelNote>,
@@ -219,7 +227,7 @@ impl Panelling {
         let mut points = raw.clone();
         let size = points.iter().flat_map(|p| p.iter()).fold(Box3::EMPTY, |b, &p| b.including(p));
         let zeros = zeros(&structure, &points, size.diagonal());
-        set_zeros(&structure, &zeros, &mut points);
+        set_zeros(&zeros, &mut points);
         let fixed = fixed(&structure, &points, &size);
         let joined = match before.filter(|b| b.joined.fixed == fixed) {
             Some(before)
@@ -315,7 +323,7 @@ impl Panelling {
     pub fn positions<T: Scalar>(&self, graph: &Graph<T>) -> Option<Vec<Vec3<T>>> {
         let points = evaluated_all(&self.structure, &self.names, graph, |_| None);
         let mut points = points.into_iter().collect::<Option<Vec<_>>>()?;
-        set_zeros(&self.structure, &self.zeros, &mut points);
+        set_zeros(&self.zeros, &mut points);
         Some(self.gathered(&points, &self.body_points(graph, &points)?))
     }
 
@@ -446,19 +454,25 @@ fn knuckle_note(
     PanelNote::Knuckle { patch: draft.object.name.to_string(), uv, at, area }
 }
 
-/// The parts of patches that are in a coordinate plane except for rounding.
-fn zeros(structure: &PanelTopology, points: &[Arc<Vec<Vec3>>], size: f64) -> Vec<(u32, u8, u8)> {
+/// The points of patches that are in a coordinate plane except for rounding, with the axis: those of
+/// whole patches, and of panel edges at the borders of patches.
+fn zeros(structure: &PanelTopology, points: &[Arc<Vec<Vec3>>], size: f64) -> Vec<Zero> {
     let near = IN_PLANE * size;
     let mut found = Vec::new();
     for (patch, (frame, points)) in structure.patches.iter().zip(points).enumerate() {
         for axis in 0..3u8 {
-            let at = |k: usize| points[k][usize::from(axis)];
-            let inside = |part| indices(frame.divisions, part).all(|k| at(k).abs() <= near);
-            let edges: Vec<u8> = (0..4).filter(|&k| inside(k)).collect();
-            let whole = edges.len() == 4 && inside(4);
-            let parts = if whole { vec![4] } else { edges };
-            for part in parts {
-                found.push((patch as u32, part, axis));
+            let inside = |k: &usize| points[*k][usize::from(axis)].abs() <= near;
+            let zero = |point: usize| Zero { patch: patch as u32, point: point as u32, axis };
+            if indices(frame.divisions, 4).all(|k| inside(&k)) {
+                found.extend(indices(frame.divisions, 4).map(zero));
+                continue;
+            }
+            for edge in 0..4 {
+                let edge: Vec<usize> = indices(frame.divisions, edge).collect();
+                let ends = edge.windows(2).filter(|ends| ends.iter().all(inside));
+                let mut ends: Vec<usize> = ends.flatten().copied().collect();
+                ends.dedup();
+                found.extend(ends.into_iter().map(zero));
             }
         }
     }
@@ -466,24 +480,15 @@ fn zeros(structure: &PanelTopology, points: &[Arc<Vec<Vec3>>], size: f64) -> Vec
 }
 
 /// Makes the coordinates zero; their derivatives stay.
-fn set_zeros<T: Real>(
-    structure: &PanelTopology,
-    zeros: &[(u32, u8, u8)],
-    points: &mut [Arc<Vec<Vec3<T>>>],
-) {
-    for &(patch, part, axis) in zeros {
-        let divisions = structure.patches[patch as usize].divisions;
+fn set_zeros<T: Real>(zeros: &[Zero], points: &mut [Arc<Vec<Vec3<T>>>]) {
+    for &Zero { patch, point, axis } in zeros {
+        let (point, axis) = (point as usize, usize::from(axis));
         let points = &mut points[patch as usize];
-        let zero = |k: usize| points[k][usize::from(axis)].re().to_bits() == 0;
-        if indices(divisions, part).all(zero) {
-            continue;
-        }
-        let points = Arc::make_mut(points);
-        for k in indices(divisions, part) {
-            let mut p = points[k].to_array();
-            let x = &mut p[usize::from(axis)];
-            *x = T::linear(0.0, &[(1.0, *x)]);
-            points[k] = p.into();
+        let x = points[point][axis];
+        if x.re().to_bits() != 0 {
+            let mut p = points[point].to_array();
+            p[axis] = T::linear(0.0, &[(1.0, x)]);
+            Arc::make_mut(points)[point] = p.into();
         }
     }
 }
