@@ -9,6 +9,7 @@ use crate::expr::form::Form;
 use crate::expr::interval::{octants, sides as sides_of};
 use crate::{FieldError, Leaf, Primitive, Set};
 use moldloft_num::{Box3, Real, Vec3};
+use rustc_hash::FxHashMap;
 use std::collections::VecDeque;
 
 /// Edges by the names of their two faces; `None`: all.
@@ -112,12 +113,12 @@ impl EdgeSpace {
             return false;
         }
         let Some(out) = (a + b).normalized() else { return false };
-        // All round the point, not to one side of an edge's end.
-        let along = a.cross(b) * (1.0 / a.cross(b).norm());
+        // On the open side, where a part that stands on the face of another begins, and to both
+        // sides along the edge, not to one side of its end.
+        let open = p + out * near;
+        let along = a.cross(b) * (near / a.cross(b).norm());
         let within = |q: Vec3| rest.value(q) < 0.0 || rest.is_everything();
-        within(p + along * near)
-            && within(p - along * near)
-            && self.beside.value(p + out * near) < 0.0
+        within(open + along) && within(open - along) && self.beside.value(open) < 0.0
     }
 }
 
@@ -147,17 +148,26 @@ fn others<T: Real>(body: &BodyTerms<T>, term: &[u32], own: u32) -> Set<T> {
     rest.fold(Set::everything(), |s, code| s & Set::of_leaf(&body.literal(*code).primitive))
 }
 
-/// The pairs of faces, one of each of two terms, that meet in an edge that is chosen, with the rest of both terms.
+/// An edge between a face of one term and a face of another, by the indices of the terms and the
+/// codes of the faces.
+#[derive(Clone, Copy, PartialEq, Eq, Hash)]
+struct TermEdge {
+    terms: [usize; 2],
+    faces: [u32; 2],
+}
+
+/// The chosen edges in which a face of a term of one body meets a face of a term of the other,
+/// within the rest of both terms.
 fn edges_between<T: Real>(
     bodies: [&BodyTerms<T>; 2],
     choice: &mut EdgeSelection,
     space: &EdgeSpace,
-    mut found: impl FnMut(&Leaf<T>, &Leaf<T>, Set<T>) -> Result<(), FieldError>,
-) -> Result<(), FieldError> {
+) -> Vec<TermEdge> {
     let same = std::ptr::eq(bodies[0], bodies[1]);
+    let mut found = Vec::new();
     for (k, p) in bodies[0].terms.iter().enumerate() {
         let from = if same { k + 1 } else { 0 };
-        for q in &bodies[1].terms[from..] {
+        for (m, q) in bodies[1].terms.iter().enumerate().skip(from) {
             for (&i, &j) in p.iter().flat_map(|i| q.iter().map(move |j| (i, j))) {
                 let (l1, l2) = (bodies[0].literal(i), bodies[1].literal(j));
                 if parallel(&l1.primitive, &l2.primitive) {
@@ -167,12 +177,12 @@ fn edges_between<T: Real>(
                 if space.shows([&l1.primitive, &l2.primitive], &rest)
                     && choice.takes(&face_name(l1), &face_name(l2))
                 {
-                    found(l1, l2, rest)?;
+                    found.push(TermEdge { terms: [k, m], faces: [i, j] });
                 }
             }
         }
     }
-    Ok(())
+    found
 }
 
 /// The union of two sets with fillets of setback `widths` where their faces meet, along all edges or those chosen by
@@ -197,36 +207,54 @@ pub fn fillet_sets<T: Real>(
     let space = EdgeSpace { over, beside: plain.complement() };
     let terms = [BodyTerms::of(a, false)?, BodyTerms::of(b, false)?];
     let mut out = both;
-    edges_between([&terms[0], &terms[1]], &mut choice, &space, |l1, l2, rest| {
-        let [d1, d2] = [l1.primitive.distance_form()?, l2.primitive.distance_form()?];
-        let patch = fillet([&d1, &d2], widths, lambda)?.patch & rest;
-        out = out.clone() | patch.named("fillet");
-        Ok(())
-    })?;
+    for edge in edges_between([&terms[0], &terms[1]], &mut choice, &space) {
+        let of = |k: usize| terms[k].literal(edge.faces[k]).primitive.distance_form();
+        let rest = |k: usize| others(&terms[k], &terms[k].terms[edge.terms[k]], edge.faces[k]);
+        let patch = fillet([&of(0)?, &of(1)?], widths, lambda)?.patch;
+        out = out | (patch & rest(0) & rest(1)).named("fillet");
+    }
     choice.finished()?;
     Ok(out)
 }
 
-/// Intersects the body with `cut` of both distances at every chosen convex edge.
+/// Cuts `off`, made of both distances, from the body at every chosen convex edge. Where two edges of
+/// a face meet, as at the rim of a pocket, the cuts run on until they meet in a mitre.
 fn edges_cut<T: Real>(
     set: &Set<T>,
     edges: Edges,
     name: &str,
-    cut: impl Fn(&Primitive<T>, &Primitive<T>) -> Result<Set<T>, FieldError>,
+    off: impl Fn(&Primitive<T>, &Primitive<T>) -> Result<Set<T>, FieldError>,
 ) -> Result<Set<T>, FieldError> {
     let mut choice = EdgeSelection::new(edges);
     let plain = set.re();
     let over = crate::query::bounds::around(&plain).ok().flatten();
     let space = EdgeSpace { over, beside: plain };
     let outside = BodyTerms::of(set, true)?;
-    let mut out = set.clone();
-    edges_between([&outside, &outside], &mut choice, &space, |l1, l2, rest| {
-        let [d1, d2] = [l1, l2].map(|l| l.primitive.distance_form());
-        let kept = cut(&-d1?, &-d2?)?.named(name);
-        out = out.clone() & (kept | rest.complement());
-        Ok(())
-    })?;
+    let found = edges_between([&outside, &outside], &mut choice, &space);
+    let mut cuts = FxHashMap::default();
+    for &edge in &found {
+        let [d1, d2] = edge.faces.map(|face| outside.literal(face).primitive.distance_form());
+        cuts.insert(edge, off(&d1?, &d2?)?.named(name));
+    }
     choice.finished()?;
+    let mut out = set.clone();
+    for edge in found {
+        let mut cut = cuts[&edge].clone();
+        for side in 0..2 {
+            for &face in outside.terms[edge.terms[side]].iter().filter(|f| **f != edge.faces[side])
+            {
+                let mut beside = edge;
+                beside.faces[side] = face;
+                let within = Set::of_leaf(&outside.literal(face).primitive);
+                cut = cut
+                    & match cuts.get(&beside) {
+                        Some(next) => within | next.clone(),
+                        None => within,
+                    };
+            }
+        }
+        out = out - cut;
+    }
     Ok(out)
 }
 
@@ -240,9 +268,7 @@ pub fn round_edges<T: Real>(
     lambda: T,
     edges: Edges,
 ) -> Result<Set<T>, FieldError> {
-    edges_cut(set, edges, "round", |d1, d2| {
-        Ok(fillet([&-d1, &-d2], [width, width], lambda)?.patch.complement())
-    })
+    edges_cut(set, edges, "round", |d1, d2| Ok(fillet([d1, d2], [width, width], lambda)?.patch))
 }
 
 /// The set with the convex edges between its faces chamfered, of setback `width` on both: all of them, or those chosen.
@@ -264,6 +290,6 @@ pub fn round_edges<T: Real>(
 pub fn chamfer_edges<T: Real>(set: &Set<T>, width: T, edges: Edges) -> Result<Set<T>, FieldError> {
     let width = crate::error::positive("width", width)?;
     edges_cut(set, edges, "chamfer", |d1, d2| {
-        Ok(Set::of_leaf(&((d1 + d2 + width) / T::from(std::f64::consts::SQRT_2))))
+        Ok(Set::of_leaf(&((d1 + d2 - width) / T::from(std::f64::consts::SQRT_2))))
     })
 }

@@ -91,9 +91,46 @@ fn chamfers_and_rounds_are_those_of_the_body() {
         let boss = cub([0.0; 3], [10.0, 6.0, 4.0]) | cub([3.0, 2.0, base], [7.0, 4.0, 6.0]);
         assert!((cut(&boss, 0.3) - 251.743).abs() < 1e-3, "{}", cut(&boss, 0.3));
     }
+    // At the corners of a pocket's rim the chamfers meet in a mitre; the cutter may end outside.
+    let block = cub([0.0; 3], [10.0, 6.0, 4.0]);
+    for top in [4.0, 4.1, 4.9] {
+        let pocketed = block.clone() - cub([3.0, 2.0, 2.0], [7.0, 4.0, top]);
+        let lost = cut(&block, 0.3) - cut(&pocketed, 0.3);
+        let rim = 16.0 + 6.0 * 0.3_f64.powi(2) + 4.0 / 3.0 * 0.3_f64.powi(3);
+        assert!((lost - rim).abs() < 1e-6, "{lost} for {rim}");
+    }
     let pocket =
         |top: f64| cub([0.0; 3], [10.0, 10.0, 1.0]) - cub([2.0, 2.0, 0.5], [8.0, 8.0, top]);
     alike(&soft(&pocket(1.0)), &soft(&pocket(1.5)), [10.0, 10.0, 1.0]);
+}
+
+#[test]
+fn a_post_is_filleted_whether_it_stands_on_the_plate_or_is_let_in() {
+    let plate = cub([-2.0, -2.0, -1.0], [2.0, 2.0, 0.0]);
+    let pipe = Primitive::cylinder(axis(v(0.0, 0.0, 0.0), v(0.0, 0.0, 1.0)), 1.0).unwrap();
+    let square = |foot: f64| cub([-1.0, -1.0, foot], [1.0, 1.0, 2.0]);
+    let round = |foot: f64| Set::new(&pipe) & cub([-2.0, -2.0, foot], [2.0, 2.0, 2.0]);
+    let fillet =
+        |post: &Set| fillet_sets([&plate, post], [0.5; 2], moldloft_field::CIRCULAR, None).unwrap();
+    let mut random = Random::new(5);
+    for post in [&square as &dyn Fn(f64) -> Set, &round] {
+        let let_in = fillet(&post(-1.0));
+        // The middle of the arc of radius 0.5 about (1.5, 0.5).
+        let reach = 1.5 - 0.5 * 0.5_f64.sqrt();
+        assert!(let_in.value(v(reach - 1e-3, 0.0, reach - 1.0 - 1e-3)) < 0.0);
+        assert!(let_in.value(v(reach + 1e-3, 0.0, reach - 1.0 + 1e-3)) > 0.0);
+        for foot in [0.0, -0.5] {
+            let found = fillet(&post(foot));
+            for _ in 0..3000 {
+                let p = v(
+                    random.between(-2.1, 2.1),
+                    random.between(-2.1, 2.1),
+                    random.between(-0.2, 0.7),
+                );
+                assert_eq!(found.value(p) < 0.0, let_in.value(p) < 0.0, "{foot} {p:?}");
+            }
+        }
+    }
 }
 
 #[test]
