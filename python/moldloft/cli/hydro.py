@@ -462,6 +462,8 @@ def _one(flotation: Hydrostatics) -> str:
     figures = {k: v for k, v in flotation.as_dict().items() if k not in _HIDDEN}
     width = max(map(len, figures))
     for name, value in figures.items():
+        if name in flotation.bounds:
+            value = _within(value, flotation.bounds[name])
         text = f"{value:.8g}" if isinstance(value, float) else str(value)
         if name in _ANGLES:
             text = f"{math.degrees(value):.8g} degrees"
@@ -474,6 +476,13 @@ def _one(flotation: Hydrostatics) -> str:
         lines.append(f"  {name.ljust(width)}  {text}{more}")
     lines += [f"  {remark}" for remark in flotation.remarks]
     return "\n".join(lines)
+
+
+def _within(value: float, bound: float) -> float:
+    """The value without digits far below its bound."""
+    if not 0 < bound < math.inf:
+        return value
+    return round(value, 1 - math.floor(math.log10(bound))) + 0.0
 
 
 def _table(rows: HydrostaticTable | RightingCurve) -> str:
