@@ -178,8 +178,9 @@ export class Changes {
   async settled(): Promise<void> {
     await this.rested()
     await this.hands.settled()
-    for (const editor of this.files.all) await editor.synced()
     await this.setting.settled()
-    await this.writing
+    for (let last = null; last !== this.writing; ) await (last = this.writing)
+    // What was written is a change of the text, which the server must have.
+    for (const editor of this.files.all) await editor.synced()
   }
 }
