@@ -105,20 +105,7 @@ def files(model: moldloft.Model, folder: Path, format: str) -> Any:
 
 
 def content(path: Path) -> bytes:
-    """A file's bytes; CGNS by its arrays, for HDF5 stores times."""
-    if path.suffix == ".cgns":
-        import h5py
-
-        found: dict[str, Any] = {}
-        with h5py.File(path) as file:
-            file.visititems(
-                lambda name, item: (
-                    found.__setitem__(name, np.asarray(item[()]))
-                    if isinstance(item, h5py.Dataset)
-                    else None
-                )
-            )
-        return json.dumps(plain(found)).encode()
+    """A file's bytes, without versions."""
     data = path.read_bytes()
     return re.sub(rb"(?i)moldloft[ -]?v?[0-9][0-9.]*", b"moldloft", data)
 

@@ -341,8 +341,6 @@ _EXTRAS = {
     "prompt": "import moldloft.cli.editor, prompt_toolkit",
     "notebook": "from moldloft.workbench.page import engine_packed; import anywidget; "
     "assert engine_packed() is None or m.view().text == m.text",
-    "grids": "from moldloft.files import commit, produce; import pathlib; "
-    "commit(pathlib.Path(), produce(m, 'cgns', pathlib.Path('boat.cgns')))",
     "study": "from moldloft.study import component; "
     "component(m, ['beam'], ['hydrostatics.volume'])",
     "optimizers": "import optuna, pymoo, moldloft.study.optimizers",

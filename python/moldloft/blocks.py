@@ -8,8 +8,6 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from moldloft.arguments import explain
 from moldloft.errors import Error
 from moldloft.formats import formats
@@ -17,6 +15,7 @@ from moldloft.formats import formats
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
+    import numpy as np
     from numpy.typing import NDArray
 
     from moldloft import _core
@@ -142,12 +141,8 @@ class Blocks:
     (6.0, True)
     """
 
-    def __init__(self, core: _core.Blocks, symmetry: str = "", unit_of_length: str = "") -> None:
+    def __init__(self, core: _core.Blocks) -> None:
         self._core = core
-        self.symmetry = symmetry
-        """The planes that the model is mirrored in, of ``"xyz"``."""
-        self.unit_of_length = unit_of_length
-        """Unit of the positions, such as ``"m"``; empty if the model states no unit."""
         summary = core.summary()
         self.cells: int = summary["cells"]
         """Number of cells."""
@@ -183,22 +178,9 @@ class Blocks:
     @cached_property
     def boundaries(self) -> tuple[Boundary, ...]:
         """The parts of faces without a neighbour. Degenerate faces are omitted."""
-        size = float(np.abs(self.vertices).max(initial=1.0))
-        found = []
-        for part in self._core.boundaries():
-            number, face, begin, end = _side(part)
-            block = self.blocks[number]
-            name = block.faces[face]
-            places = tuple(slice(a, b + 1) for a, b in zip(begin, end, strict=True))
-            points = block.points[places]
-            flat = any(
-                np.abs(points[..., "xyz".index(axis)]).max() <= 1e-9 * size
-                for axis in self.symmetry
-            )
-            own = f"{block.name}.{'uvw'[face // 2]}{face % 2}"
-            kind = "symmetry" if flat else "open" if name == own else "wall"
-            found.append(Boundary(number, face, begin, end, name, kind))
-        return tuple(found)
+        return tuple(
+            Boundary(*_side(part), name, kind) for part, name, kind in self._core.boundaries()
+        )
 
     @property
     def problems(self) -> list[_core.Diagnostic]:

@@ -104,22 +104,6 @@ class Format:
 
 PYTHON_ROWS = (
     Format(
-        "cgns",
-        "CGNS structured surface zones with interfaces (needs h5py)",
-        holds="grids",
-        symmetry="x, y, xy",
-        of_grids=True,
-        writer="moldloft.cgns:write",
-    ),
-    Format(
-        "volume-cgns",
-        "the cells of solids as CGNS zones (needs h5py)",
-        suffix="volume.cgns",
-        holds="volumes",
-        symmetry="x, y, xy",
-        writer="moldloft.volume_cgns:write",
-    ),
-    Format(
         "blockmesh",
         "the blocks of solids as OpenFOAM's blockMeshDict",
         suffix="blockMeshDict",

@@ -173,8 +173,8 @@ def decode_plot3d(
 def read_cgns(path: str | Path) -> dict[str, NDArray[np.float64]]:
     """The points of the structured zones of a CGNS file, by name.
 
-    Files are HDF5, the default of the CGNS library; older ADF files are not read. h5py is not
-    needed. Boundaries, solutions and interfaces are ignored.
+    Files are HDF5, the default of the CGNS library; older ADF files are not read. Boundaries,
+    solutions and interfaces are ignored.
 
     Parameters
     ----------
@@ -353,9 +353,16 @@ def encoded(
 
     rows = [row for row in formats().values() if row.of_grids]
     row = format_named(Path(name).suffix.lstrip("."), rows)
-    if row.writer:
-        return {name: cgns_bytes(name, grids, names)}
-    return dict(_core.write_grids(_grids(grids), row.name, name))
+    arrays = _grids(grids)
+    return dict(_core.write_grids(arrays, _names(arrays, names), row.name, name))
+
+
+def _names(grids: Sequence[Any], names: Sequence[str] | None) -> list[str]:
+    """A name for each grid."""
+    words = list(names) if names else [f"grid{k + 1}" for k in range(len(grids))]
+    if len(words) != len(grids):
+        raise Error(f"{len(grids)} grids, but {len(words)} names")
+    return words
 
 
 def write_vts(path: str | Path, grids: Sequence[ArrayLike]) -> list[Path]:
@@ -374,7 +381,8 @@ def write_vts(path: str | Path, grids: Sequence[ArrayLike]) -> list[Path]:
         The files, the main one first.
     """
     target = Path(path)
-    files = _core.write_grids(_grids(grids), "vts", target.name)
+    arrays = _grids(grids)
+    files = _core.write_grids(arrays, _names(arrays, None), "vts", target.name)
     return commit(target.parent, [Output(name, data) for name, data in files], make=False)
 
 
@@ -404,23 +412,8 @@ def write_cgns(
         The file.
     """
     target = Path(path)
-    return _commit(path, cgns_bytes(target.name, grids, names, tolerance))
-
-
-def cgns_bytes(
-    name: str,
-    grids: Sequence[ArrayLike],
-    names: Sequence[str] | None = None,
-    tolerance: float = 1e-9,
-) -> bytes:
-    """The bytes of the file that :func:`write_cgns` writes."""
-    from moldloft import cgns
-
-    arrays = [np.asarray(grid, dtype=np.float64) for grid in grids]
-    words = list(names) if names else [f"grid{k + 1}" for k in range(len(arrays))]
-    if len(words) != len(arrays):
-        raise Error(f"{len(arrays)} grids, but {len(words)} names")
-    return cgns.write_grids(arrays, words, Path(name).stem, tolerance)
+    arrays = _grids(grids)
+    return _commit(path, _core.write_cgns(arrays, _names(arrays, names), target.stem, tolerance))
 
 
 def write_stl(path: str | Path, grids: Sequence[ArrayLike], *, flip: bool = False) -> Path:

@@ -6,7 +6,6 @@ import threading
 import warnings
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from moldloft import _core
@@ -323,17 +322,7 @@ class Model(Differentiable, Floating, Writable, Adapted):
     @property
     def written(self) -> dict[str, bytes]:
         """Files written by the program, by name; ``moldloft run`` saves them."""
-        files = dict(self._document.written())
-        for name, blocks, joints, ends in self._document.written_for_cgns():
-            # CGNS is HDF5: the program left its blocks in Plot3D, the file is made here.
-            from moldloft import _core, grids, volume_cgns
-
-            found, _ = _core.read_plot3d(files[name])
-            if found[0].shape[2] > 1:
-                files[name] = volume_cgns.write_grids(Path(name).stem, blocks, found, joints, ends)
-            else:
-                files[name] = grids.cgns_bytes(name, [b[:, :, 0, :] for b in found], blocks)
-        return files
+        return dict(self._document.written())
 
     def refine(self, times: int) -> None:
         """Set the refinement level: each level halves the spacing of sizes declared by ``refined``.
@@ -727,7 +716,7 @@ class Model(Differentiable, Floating, Writable, Adapted):
         """
         from moldloft.blocks import Blocks
 
-        return Blocks(self._document.blocks(), self.symmetry, self.units.length)
+        return Blocks(self._document.blocks())
 
     # -- for other packages ----------------------------------------------------------------
 

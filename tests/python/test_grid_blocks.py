@@ -618,6 +618,7 @@ def test_cgns_files_of_examples_are_clean(tmp_path: Path) -> None:
             try:
                 m.write(tmp_path / f"{form}.cgns", format=form)
             except moldloft.Error as error:
-                assert "no structured grid" in str(error) or "no solids" in str(error)
+                words = ("no structured grid", "no solids", "no panels", "cannot hold the wires")
+                assert any(word in str(error) for word in words)
                 continue
             cgnscheck(tmp_path / f"{form}.cgns")

@@ -191,7 +191,7 @@ def test_cgns_of_arrays(tmp_path: Path) -> None:
     path = grids.write_cgns(tmp_path / "ball.cgns", [ball])
     assert check_cgns(path, {"grid1": ball}) == [("Z_grid1", "Z_grid1")] * 2
     for bad, match in [
-        ([], "no grid"),
+        ([], "no structured grid"),
         ([np.zeros((3, 1, 3))], "two lines"),
         ([np.full((2, 2, 3), np.nan)], "finite"),
     ]:

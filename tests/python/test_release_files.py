@@ -332,7 +332,7 @@ def test_the_recipe_is_of_the_schema() -> None:
     assert built and built[1] in host
 
 
-@pytest.mark.parametrize("extra", ["plot", "prompt", "notebook", "grids", "study", "hydro", "cad"])
+@pytest.mark.parametrize("extra", ["plot", "prompt", "notebook", "study", "hydro", "cad"])
 def test_the_smoke_test_of_an_extra_runs(
     extra: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, cli
 ) -> None:
@@ -348,7 +348,6 @@ def test_what_needs_an_extra_names_it(tmp_path: Path) -> None:
     """Without its packages each extra's use is refused by the extra's name."""
     uses = {
         "plot": "m.hydrostatic_table([0.1, 0.2]).plot('t.png')",
-        "grids": "m.write('boat.cgns')",
         "study": "from moldloft.study import component; component(m, ['beam'], ['mesh.area'])",
         "hydro": "m.to_capytaine()",
         "cad": "m.write('boat.dxf'); m.write('boat.3dm')",

@@ -252,7 +252,7 @@ AbsRing a_ring(a_snake, 0.5); ZPlane a_plane(1); RPYFrame a_frame(a_point); CosR
 
 
 PUBLIC = (
-    "adapters blocks builder cad cgns fairing fairing.tables files formats grids high_order "
+    "adapters blocks builder cad fairing fairing.tables files formats grids high_order "
     "hydrostatics implicit language lines_plan loading mesh models nurbs objects offsets sketches "
     "stability study units weights"
 )

@@ -771,12 +771,6 @@ impl Document {
         self.plain.env.files.written()
     }
 
-    /// Written files that the host converts to CGNS, with names, joints and boundaries of their
-    /// blocks. Their content is Plot3D, plain binary in double precision.
-    pub fn written_for_cgns(&self) -> impl Iterator<Item = (&str, &moldloft_lang::CgnsBlocks)> {
-        self.plain.env.files.cgns()
-    }
-
     /// The variables that the program's own files declare: name, type with extents, and value.
     pub fn variables(&self) -> Vec<(String, String, Value<f64>)> {
         let names = (0..self.modules.name_count() as u32).map(moldloft_lang::source::module::Name);

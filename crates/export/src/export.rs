@@ -1,13 +1,12 @@
 //! One export: the document, the name of the main file, the options, and the services for rows of
 //! the table.
 
-use crate::format::Encoder;
-use crate::{Format, Holds, SymmetryPlanes, length_unit};
+use crate::{Format, Holds, SolidCells, SymmetryPlanes, length_unit, stated_length};
 use moldloft_diag::Diagnostic;
 use moldloft_document::{Document, Panelled, PatchAnalysis};
 use moldloft_io::vtk::{self, NamedFile};
 use moldloft_io::{LinesAndPoints, StructuredGrid, WriteError};
-use moldloft_mesh::{Blocks, Mesh};
+use moldloft_mesh::Mesh;
 use moldloft_num::Fineness;
 use moldloft_registry::Value;
 use std::ops::Deref;
@@ -169,11 +168,12 @@ fn refuse_options(format: &Format, options: &WriteOptions) -> Result<(), Diagnos
 /// # Errors
 /// A format for other content; content that the format cannot represent.
 pub fn write_blocks(
-    blocks: &Blocks,
+    cells: &SolidCells<'_>,
     format: &Format,
     main: &str,
 ) -> Result<Vec<NamedFile>, Vec<Diagnostic>> {
-    encoded(format.volume, "cells of solids", blocks, format, main)
+    let encode = format.volume.ok_or_else(|| vec![no_format(format, "cells of solids")])?;
+    encode(cells, &FileName(main)).map_err(|e| ExportFailure::Write(e).diagnostics(format.name))
 }
 
 /// The files of grids of points in one format; `main` is the name of the first one, without folder.
@@ -182,25 +182,18 @@ pub fn write_blocks(
 /// A format for other content; content that the format cannot represent.
 pub fn write_grids(
     grids: &[StructuredGrid],
+    names: &[String],
     format: &Format,
     main: &str,
 ) -> Result<Vec<NamedFile>, Vec<Diagnostic>> {
-    encoded(format.grids, "grids of points", grids, format, main)
+    let encode = format.grids.ok_or_else(|| vec![no_format(format, "grids of points")])?;
+    encode(grids, names, &FileName(main))
+        .map_err(|e| ExportFailure::Write(e).diagnostics(format.name))
 }
 
-fn encoded<T: ?Sized>(
-    encoder: Option<Encoder<T>>,
-    what: &str,
-    value: &T,
-    format: &Format,
-    main: &str,
-) -> Result<Vec<NamedFile>, Vec<Diagnostic>> {
-    let Some(encode) = encoder else {
-        let message = format!("{} is not a format of {what}", format.name);
-        return Err(vec![Diagnostic::error("unknown-format", message)]);
-    };
-    let files = encode(value, &FileName(main)).map_err(ExportFailure::from);
-    files.map_err(|failure| failure.diagnostics(format.name))
+fn no_format(format: &Format, what: &str) -> Diagnostic {
+    let message = format!("{} is not a format of {what}", format.name);
+    Diagnostic::error("unknown-format", message)
 }
 
 /// File name of the main file, without folder.
@@ -275,7 +268,14 @@ impl Export<'_> {
     pub fn write_volume(&mut self) -> Result<Vec<NamedFile>, ExportFailure> {
         let blocked = self.document.blocked()?;
         let Some(encode) = self.format.volume else { return Ok(Vec::new()) };
-        Ok(encode(&blocked.blocks, &self.main)?)
+        let (symmetry, length) = (self.document.symmetry(), self.stated_length());
+        let cells = SolidCells { blocks: &blocked.blocks, symmetry: &symmetry, length: &length };
+        Ok(encode(&cells, &self.main)?)
+    }
+
+    /// The unit of length that the model states; empty without one.
+    pub fn stated_length(&self) -> String {
+        stated_length(self.document).unwrap_or_default()
     }
 
     /// The size of the model's unit of length in metres.

@@ -31,13 +31,28 @@ pub struct Format {
     /// Makes the files. The main one is named [`Export::main`].
     pub write: fn(&mut Export<'_>) -> Result<Vec<NamedFile>, ExportFailure>,
     /// Makes the files of grids of points, if the format holds these.
-    pub grids: Option<Encoder<[StructuredGrid]>>,
+    pub grids: Option<GridsEncoder>,
     /// Makes the files of the cells of solids, if the format holds these.
-    pub volume: Option<Encoder<Blocks>>,
+    pub volume: Option<CellsEncoder>,
 }
 
-/// Makes files from a value; the name is that of the main file.
-pub type Encoder<T> = fn(&T, &FileName<'_>) -> Result<Vec<NamedFile>, WriteError>;
+/// Makes files of grids of points with their names; the last name is that of the main file.
+pub type GridsEncoder =
+    fn(&[StructuredGrid], &[String], &FileName<'_>) -> Result<Vec<NamedFile>, WriteError>;
+
+/// Makes files of the cells of solids; the name is that of the main file.
+pub type CellsEncoder = fn(&SolidCells<'_>, &FileName<'_>) -> Result<Vec<NamedFile>, WriteError>;
+
+/// The cells of solids, with what their model states.
+#[derive(Clone, Copy, Debug)]
+pub struct SolidCells<'a> {
+    /// The cells.
+    pub blocks: &'a Blocks,
+    /// The planes of symmetry, such as "y".
+    pub symmetry: &'a str,
+    /// The unit of length; empty without one.
+    pub length: &'a str,
+}
 
 impl Format {
     /// Defaults: panels of all patches, one side, binary.

@@ -39,11 +39,11 @@ pub use export::{
     Export, ExportFailure, FileName, Panels, WriteOptions, panels, tagged, write, write_blocks,
     write_grids,
 };
-pub use format::{Encoder, Format, Holds, Lids, SymmetryPlanes};
+pub use format::{CellsEncoder, Format, GridsEncoder, Holds, Lids, SolidCells, SymmetryPlanes};
 pub use formats::{FORMATS, format_named};
 pub use kind_picture::kind_picture;
 pub use lines_drawing::lines_sheet;
 pub use moldloft_io::vtk::NamedFile;
 pub use picture::picture;
 pub use spline_patches::{SplinePatch, spline_patches};
-pub use units::{GRAVITY, length_unit};
+pub use units::{GRAVITY, length_unit, stated_length};

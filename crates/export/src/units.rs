@@ -6,11 +6,22 @@ use moldloft_lang::model_file::units::{self, PhysicalDimension};
 /// Standard gravity in metres per second squared (ISO 80000-3).
 pub const GRAVITY: f64 = 9.80665;
 
-/// The model's unit of length and its size in millimetres; metres without a known unit.
-pub fn length_unit(document: &Document) -> (String, f64) {
+/// The unit of length that the model states, and its size in metres.
+fn stated(document: &Document) -> Option<(String, f64)> {
     let stated = units::parsed(&document.units()).unwrap_or_default();
     let length = stated.into_iter().find(|u| u.1 == PhysicalDimension::Length);
-    length.map_or(("m".into(), 1000.0), |(word, _, metres)| (word.into(), MILLIMETRES * metres))
+    length.map(|(word, _, metres)| (word.into(), metres))
+}
+
+/// The word for the unit of length that the model states.
+pub fn stated_length(document: &Document) -> Option<String> {
+    stated(document).map(|(word, _)| word)
+}
+
+/// The model's unit of length and its size in millimetres; metres without a known unit.
+pub fn length_unit(document: &Document) -> (String, f64) {
+    let (word, metres) = stated(document).unwrap_or(("m".into(), 1.0));
+    (word, MILLIMETRES * metres)
 }
 
 /// Millimetres in a metre.

@@ -69,7 +69,7 @@ impl HexMesh {
         names: &[FaceNames],
         go_on: &dyn Fn() -> Result<(), Spent>,
     ) -> Result<Self, Spent> {
-        let (points, numbers) = nodes_while(blocks, go_on)?;
+        let (points, numbers) = nodes_while(blocks, joined_within(blocks), go_on)?;
         let mut cells = Vec::new();
         let mut sides: Vec<(Vec<usize>, [usize; 4], Option<(String, String)>)> = Vec::new();
         for (b, block) in blocks.iter().enumerate() {
@@ -164,15 +164,28 @@ impl VolumeGrid<f64> {
 /// The nodes of blocks, one where points of faces coincide to 1e-10 of the size, and the node of each point of each
 /// block, in the order of its planes.
 pub fn shared_nodes<T: Real>(blocks: &[VolumeGrid<T>]) -> (Vec<Vec3>, Vec<Vec<usize>>) {
-    nodes_while(blocks, &|| Ok(())).expect("nothing ends it")
+    shared_nodes_within(blocks, joined_within(blocks))
+}
+
+/// As [`shared_nodes`], with a distance below which points coincide.
+pub fn shared_nodes_within<T: Real>(
+    blocks: &[VolumeGrid<T>],
+    tolerance: f64,
+) -> (Vec<Vec3>, Vec<Vec<usize>>) {
+    nodes_while(blocks, tolerance, &|| Ok(())).expect("nothing ends it")
+}
+
+/// The distance below which points of blocks coincide.
+fn joined_within<T: Real>(blocks: &[VolumeGrid<T>]) -> f64 {
+    SAME * blocks.iter().map(VolumeGrid::extent).fold(0.0, f64::max)
 }
 
 fn nodes_while<T: Real>(
     blocks: &[VolumeGrid<T>],
+    tolerance: f64,
     go_on: &dyn Fn() -> Result<(), Spent>,
 ) -> Result<(Vec<Vec3>, Vec<Vec<usize>>), Spent> {
-    let size = blocks.iter().map(VolumeGrid::extent).fold(0.0, f64::max);
-    let mut nodes = Nodes { tolerance: SAME * size, points: Vec::new(), buckets: HashMap::new() };
+    let mut nodes = Nodes { tolerance, points: Vec::new(), buckets: HashMap::new() };
     let mut numbers = Vec::with_capacity(blocks.len());
     for block in blocks {
         let plain = block.re();

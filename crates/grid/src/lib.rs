@@ -35,7 +35,9 @@ pub use block_quality::{BlockMetric, block_quality, block_quality_until};
 pub use control::{WallReport, wall_cells};
 pub use elliptic::{Elliptic, Method, PeriodicEdges, Smoothed, Wall, elliptic, elliptic_until};
 pub use error::{Corner, GridError};
-pub use hex_mesh::{BoundaryPatch, FaceNames, HEX_FACES, HexMesh, MeshCheck, shared_nodes};
+pub use hex_mesh::{
+    BoundaryPatch, FaceNames, HEX_FACES, HexMesh, MeshCheck, shared_nodes, shared_nodes_within,
+};
 pub use marching::{
     FailureCause, Hyperbolic, MarchBoundary, MarchFailure, MarchReport, Marched, Stop, StopReason,
     Support, hyperbolic, hyperbolic_curve, hyperbolic_curve_until, hyperbolic_until,

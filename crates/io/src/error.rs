@@ -26,6 +26,15 @@ pub enum WriteError {
         /// The patches without a grid; empty when there are no patches at all.
         patches: Vec<String>,
     },
+    /// A grid without cells, or a block among surfaces.
+    NoSurface {
+        /// The format.
+        format: &'static str,
+        /// The grid.
+        name: String,
+        /// Points along i, j and k.
+        size: [usize; 3],
+    },
     /// A mesh declared as one half extends to both sides of its symmetry plane.
     BothSides {
         /// `x` or `y`: the coordinate that changes sign.
@@ -117,6 +126,10 @@ impl fmt::Display for WriteError {
             Self::NoGrid { patches } => {
                 write!(f, "no structured grid in patch `{}`", patches.join("`, `"))
             }
+            Self::NoSurface { format, name, size: [i, j, k] } => write!(
+                f,
+                "{format} takes surfaces of two lines or more each way, but `{name}` has {i} x {j} x {k} points"
+            ),
             Self::NoPlace { format, what, name } => {
                 write!(f, "{format} cannot hold the {what} of `{name}`; obj and vtp can")
             }

@@ -20,7 +20,7 @@
 //! | STL, text | [`stl::write_text`] | [`stl::read`] |
 //! | VTK XML | [`vtk::polydata`], [`vtk::structured_files`], [`vtk::block_files`], [`vtk::unstructured`], [`vtk::grid_files`] | – |
 //! | Plot3D, all variants | [`plot3d::write`], [`plot3d::write_mesh`], [`plot3d::write_blocks`] | [`plot3d::read`] |
-//! | CGNS, structured zones | by the Python package | [`cgns::read`] |
+//! | CGNS, structured zones | [`cgns::write_mesh`], [`cgns::write_surfaces`], [`cgns::write_blocks`], [`cgns::write_volume`] | [`cgns::read`] |
 //! | points in text | [`points::write`], [`points::write_csv`] | [`points::read`] |
 //! | aerofoil sections | – | [`section::read_aerofoil`] |
 //! | SVG lines drawings | [`drawing::draw`] | – |
@@ -78,7 +78,7 @@ pub mod vtk;
 pub use error::{Bits, FilePosition, ReadError, WriteError};
 pub use foreign::ForeignMesh;
 pub use solver::PanelFileOptions;
-pub use structured_grid::StructuredGrid;
+pub use structured_grid::{NamedGrid, StructuredGrid};
 
 use moldloft_num::Vec3;
 

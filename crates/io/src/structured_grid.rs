@@ -15,6 +15,15 @@ pub struct StructuredGrid {
     pub iblank: Option<Vec<i32>>,
 }
 
+/// A grid with a name.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NamedGrid {
+    /// Its name.
+    pub name: String,
+    /// Its points.
+    pub grid: StructuredGrid,
+}
+
 impl StructuredGrid {
     /// The surface of points (i, j) at `i * n + j`, the order of arrays in the language and NumPy.
     ///
@@ -50,11 +59,15 @@ impl StructuredGrid {
     }
 
     /// Refuses coordinates beyond `limit`, NaN included.
-    pub(crate) fn check(blocks: &[Self], limit: f64) -> Result<(), WriteError> {
-        if blocks.is_empty() {
+    pub(crate) fn check<'a>(
+        blocks: impl IntoIterator<Item = &'a Self>,
+        limit: f64,
+    ) -> Result<(), WriteError> {
+        let mut blocks = blocks.into_iter().peekable();
+        if blocks.peek().is_none() {
             return Err(WriteError::NoGrid { patches: vec![] });
         }
-        for (number, block) in blocks.iter().enumerate() {
+        for (number, block) in blocks.enumerate() {
             let bad = |plane: &Vec<f64>| plane.iter().position(|x| !(x.abs() <= limit));
             if let Some(vertex) = block.planes.iter().find_map(bad) {
                 let vertex = u32::try_from(vertex).unwrap_or(u32::MAX);

@@ -19,9 +19,7 @@ pub mod run;
 pub mod source;
 pub mod value;
 
-pub use functions::block_files::{BlockJoint, CgnsBlocks};
 pub use functions::builtins::{BUILTINS, Builtin, MOST_REFINED};
-pub use functions::named_blocks::FacePart;
 pub use run::inserted::{INSERTED_FILES, InsertedFile};
 pub use source::env::{Evaluation, Param, SolveStatus};
 pub use source::{

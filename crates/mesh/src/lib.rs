@@ -65,5 +65,5 @@ pub use topology::{Block, Patch, PatchInfo, Tag, Topology, TopologyBuilder, is_t
 pub use triangulate::triangulate;
 pub use volume::{
     BadCell, BlockFace, BlockQuality, Blocks, BlocksReport, Boundary, HexBlock, Hexahedron,
-    Interface,
+    Interface, interfaces_of,
 };

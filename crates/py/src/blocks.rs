@@ -5,27 +5,22 @@ use crate::diagnostics::PyDiagnostic;
 use crate::error::{model_error, plain_error};
 use moldloft::diag::Sources;
 use moldloft::document::Blocked;
-use moldloft::export::{format_named, write_blocks};
+use moldloft::export::{SolidCells, format_named, write_blocks};
+use moldloft::io::cgns::{FacePart, block_boundaries};
 use moldloft::io::graded_blocks::{GradedPatch, graded_block_mesh, graded_parts};
 use numpy::{PyArray2, PyArray3, PyArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
 use std::sync::Arc;
 
-/// A part of a face: block, face from 0, and the indices (i, j, k) of its first and last node.
-type Side = (usize, usize, [usize; 3], [usize; 3]);
-
 /// Volume blocks at one state of a model.
 #[pyclass(frozen, name = "Blocks", module = "moldloft._core")]
 pub struct PyBlocks {
-    blocked: Arc<Blocked>,
-    problems: Vec<PyDiagnostic>,
-}
-
-impl PyBlocks {
-    pub fn new(blocked: Arc<Blocked>, problems: Vec<PyDiagnostic>) -> Self {
-        Self { blocked, problems }
-    }
+    pub blocked: Arc<Blocked>,
+    pub problems: Vec<PyDiagnostic>,
+    /// The planes of symmetry and the unit of length that the model states.
+    pub symmetry: String,
+    pub length: String,
 }
 
 #[pymethods]
@@ -82,24 +77,19 @@ impl PyBlocks {
     }
 
     /// Interfaces of blocks: (block, face, begin, end) of both sides, and the CGNS transform.
-    fn interfaces(&self) -> Vec<(Side, Side, [i32; 3])> {
+    fn interfaces(&self) -> Vec<(FacePart, FacePart, [i32; 3])> {
         let (all, _) = self.blocked.blocks.interfaces();
         all.iter()
             .map(|i| {
                 let side = |k: usize| (i.sides[k].0, i.sides[k].1, i.from[k], i.to[k]);
-                let transform = i.axes.map(|(axis, against)| {
-                    let number = axis as i32 + 1;
-                    if against { -number } else { number }
-                });
-                (side(0), side(1), transform)
+                (side(0), side(1), i.transform())
             })
             .collect()
     }
 
-    /// Parts of faces that meet nothing: (block, face, begin, end).
-    fn boundaries(&self) -> Vec<Side> {
-        let (_, free) = self.blocked.blocks.interfaces();
-        free.iter().map(|b| (b.block, b.face, b.from, b.to)).collect()
+    /// Parts of faces that meet nothing: (block, face, begin, end), name and type.
+    fn boundaries(&self) -> Vec<(FacePart, String, &'static str)> {
+        block_boundaries(&self.blocked.blocks, &self.symmetry)
     }
 
     /// The parts that a blockMeshDict has: (block, begin, end).
@@ -112,7 +102,7 @@ impl PyBlocks {
     fn block_mesh<'py>(
         &self,
         py: Python<'py>,
-        patches: Vec<(Side, String, String)>,
+        patches: Vec<(FacePart, String, String)>,
         every: usize,
     ) -> Bound<'py, PyBytes> {
         let patches: Vec<GradedPatch> = patches
@@ -134,7 +124,9 @@ impl PyBlocks {
         main: &str,
     ) -> PyResult<Vec<(String, Bound<'py, PyBytes>)>> {
         let format = format_named(format).map_err(|d| plain_error(&d.message))?;
-        let files = py.detach(|| write_blocks(&self.blocked.blocks, format, main));
+        let (symmetry, length) = (&*self.symmetry, &*self.length);
+        let cells = SolidCells { blocks: &self.blocked.blocks, symmetry, length };
+        let files = py.detach(|| write_blocks(&cells, format, main));
         let files = files.map_err(|d| model_error(&d, &Sources::new()))?;
         Ok(files.into_iter().map(|f| (f.name, PyBytes::new(py, &f.bytes))).collect())
     }

@@ -15,9 +15,8 @@ use moldloft::document::{
     Adjustable, Document, FloatAnswer, FloatRequest, FlotationOptions, Immersion, ModelFormat,
     WantedNumber,
 };
-use moldloft::export::{SplinePatch, WriteOptions, format_named, spline_patches};
+use moldloft::export::{SplinePatch, WriteOptions, format_named, spline_patches, stated_length};
 use moldloft::host::FileWorld;
-use moldloft::lang::{BlockJoint, CgnsBlocks, FacePart};
 use moldloft::model::Object;
 use moldloft::num::{Order, Vec3};
 use moldloft::rows::{CurveRef, SurfaceRef, Value};
@@ -52,9 +51,6 @@ pub struct PyDocument {
 
 /// A B-spline patch: name, degrees, spans, control points, deviation.
 type PatchFacts<'py> = (String, [usize; 2], [usize; 2], Bound<'py, PyArray3<f64>>, f64);
-
-/// A file of blocks, their names, joints and boundaries.
-type WrittenBlocks = (String, Vec<String>, Vec<BlockJoint>, Vec<(FacePart, String, String)>);
 
 type Outcome<R> = Result<R, Vec<moldloft::diag::Diagnostic>>;
 
@@ -338,16 +334,6 @@ impl PyDocument {
     /// Lines printed by the program.
     fn printed(&self, py: Python<'_>) -> Vec<String> {
         self.lock(py).printed().to_vec()
-    }
-
-    /// The written files that are to become CGNS, and names, joints and boundaries of their blocks.
-    fn written_for_cgns(&self, py: Python<'_>) -> Vec<WrittenBlocks> {
-        let document = self.lock(py);
-        let of = |(name, all): (&str, &CgnsBlocks)| {
-            let CgnsBlocks { names, joints, boundaries } = all.clone();
-            (name.to_owned(), names, joints, boundaries)
-        };
-        document.written_for_cgns().map(of).collect()
     }
 
     /// The names of the files that the program wrote.
@@ -655,14 +641,14 @@ impl PyDocument {
 
     /// The volume mesh of the shown solids.
     fn blocks(&self, py: Python<'_>) -> PyResult<PyBlocks> {
-        let (blocked, problems) = self.long_checked(py, |d| {
+        self.long_checked(py, |d| {
             let blocked = d.blocked().map_err(|e| vec![e])?;
             let sources = d.sources();
             let problems = blocked.diagnostics();
             let problems = problems.iter().map(|p| p.to_data(sources).into()).collect();
-            Ok((blocked, problems))
-        })?;
-        Ok(PyBlocks::new(blocked, problems))
+            let (symmetry, length) = (d.symmetry(), stated_length(d).unwrap_or_default());
+            Ok(PyBlocks { blocked, problems, symmetry, length })
+        })
     }
 
     fn block_jacobian<'py>(

@@ -4,11 +4,11 @@ use crate::arrays;
 use crate::error::{format_error, model_error, plain_error};
 use crate::work::unlocked;
 use moldloft::diag::Sources;
-use moldloft::export::format_named;
+use moldloft::export::{ExportFailure, format_named};
 use moldloft::io::plot3d::{self, Laid, Variant};
 use moldloft::io::points::{self, PointLayout};
 use moldloft::io::section::{self, Listing};
-use moldloft::io::{StructuredGrid, stl, vtk};
+use moldloft::io::{StructuredGrid, cgns, stl, vtk};
 use moldloft::num::Vec3;
 use numpy::ndarray::{Array4, ArrayView4};
 use numpy::{PyArray2, PyArray4, PyReadonlyArray2, PyReadonlyArray4, ToPyArray};
@@ -81,8 +81,24 @@ pub fn read_cgns<'py>(
     data: &[u8],
 ) -> PyResult<Vec<(String, Bound<'py, PyArray4<f64>>)>> {
     let data = data.to_vec();
-    let zones = unlocked(py, move || moldloft::io::cgns::read(&data))?.map_err(format_error)?;
+    let zones = unlocked(py, move || cgns::read(&data))?.map_err(format_error)?;
     Ok(zones.iter().map(|zone| (zone.name.clone(), array(py, &zone.grid))).collect())
+}
+
+/// A CGNS file of surfaces (ni, nj, 1, 3), whose edges join within a distance relative to the size of the whole.
+#[pyfunction]
+pub fn write_cgns<'py>(
+    py: Python<'py>,
+    surfaces: Vec<PyReadonlyArray4<'py, f64>>,
+    names: Vec<String>,
+    title: String,
+    tolerance: f64,
+) -> PyResult<Bound<'py, PyBytes>> {
+    let grids = grids(&surfaces)?;
+    let bytes = unlocked(py, move || cgns::write_surfaces(&grids, &names, &title, tolerance))?;
+    let bytes = bytes
+        .map_err(|e| model_error(&ExportFailure::from(e).diagnostics("cgns"), &Sources::new()))?;
+    Ok(PyBytes::new(py, &bytes))
 }
 
 /// A Plot3D file of arrays (ni, nj, nk, 3).
@@ -122,17 +138,19 @@ pub fn write_plot3d<'py>(
     Ok(PyBytes::new(py, &bytes))
 }
 
-/// The files of grids in a format, the first of them under the name `main`: name and content of each.
+/// The files of named grids in a format, the first of them under the name `main`: name and content of each.
 #[pyfunction]
 pub fn write_grids<'py>(
     py: Python<'py>,
     blocks: Vec<PyReadonlyArray4<'py, f64>>,
+    names: Vec<String>,
     format: &str,
     main: &str,
 ) -> PyResult<Vec<(String, Bound<'py, PyBytes>)>> {
     let format = format_named(format).map_err(|d| plain_error(&d.message))?;
     let (blocks, main) = (grids(&blocks)?, main.to_string());
-    let files = unlocked(py, move || moldloft::export::write_grids(&blocks, format, &main))?;
+    let files =
+        unlocked(py, move || moldloft::export::write_grids(&blocks, &names, format, &main))?;
     let files = files.map_err(|d| model_error(&d, &Sources::new()))?;
     Ok(files.into_iter().map(|f| (f.name, PyBytes::new(py, &f.bytes))).collect())
 }

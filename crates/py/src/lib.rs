@@ -66,7 +66,7 @@ mod _core {
     #[pymodule_export]
     use crate::grids::{
         grid_with_fields, grids_as_stl, points_csv, points_text, read_aerofoil, read_cgns,
-        read_plot3d, read_points, write_grids, write_plot3d,
+        read_plot3d, read_points, write_cgns, write_grids, write_plot3d,
     };
     #[pymodule_export]
     use crate::implicit::{PyFacets, PyField, PySet, call_row};

@@ -3,6 +3,7 @@
 //! To add a format, write its module with its row, and name it below.
 
 mod aqwa;
+mod cgns;
 mod gdf;
 mod gdf_high;
 mod glb;
@@ -24,6 +25,7 @@ mod stl_text;
 mod su2;
 mod svg;
 mod threemf;
+mod volume_cgns;
 mod volume_p3d;
 mod volume_vts;
 mod volume_vtu;
@@ -53,9 +55,11 @@ pub static FORMATS: &[Format] = &[
     vtp::FORMAT,
     vts::FORMAT,
     p3d::FORMAT,
+    cgns::FORMAT,
     volume_p3d::FORMAT,
     volume_vts::FORMAT,
     volume_vtu::FORMAT,
+    volume_cgns::FORMAT,
     step::FORMAT,
     iges::FORMAT,
     svg::FORMAT,

@@ -22,6 +22,7 @@ fn write(export: &mut Export<'_>) -> Result<Vec<NamedFile>, ExportFailure> {
 
 fn encode_grids(
     grids: &[StructuredGrid],
+    _: &[String],
     name: &FileName<'_>,
 ) -> Result<Vec<NamedFile>, WriteError> {
     Ok(name.main_file(stl::write_grids(grids, name.stem(), false, &|| true)?))

@@ -1,11 +1,10 @@
 //! The cells of solids as Plot3D.
 
 use crate::export::FileName;
-use crate::format::Format;
+use crate::format::{Format, SolidCells};
 use moldloft_io::WriteError;
 use moldloft_io::plot3d::{Variant, write_blocks};
 use moldloft_io::vtk::NamedFile;
-use moldloft_mesh::Blocks;
 
 pub const FORMAT: Format = Format {
     name: "volume-p3d",
@@ -15,6 +14,6 @@ pub const FORMAT: Format = Format {
     ..Format::VOLUME
 };
 
-fn encode(blocks: &Blocks, name: &FileName<'_>) -> Result<Vec<NamedFile>, WriteError> {
-    Ok(name.main_file(write_blocks(blocks, Variant::USUAL)?))
+fn encode(cells: &SolidCells<'_>, name: &FileName<'_>) -> Result<Vec<NamedFile>, WriteError> {
+    Ok(name.main_file(write_blocks(cells.blocks, Variant::USUAL)?))
 }

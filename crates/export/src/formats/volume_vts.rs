@@ -1,10 +1,9 @@
 //! The cells of solids as VTK structured grids.
 
 use crate::export::FileName;
-use crate::format::Format;
+use crate::format::{Format, SolidCells};
 use moldloft_io::WriteError;
 use moldloft_io::vtk::{self, NamedFile};
-use moldloft_mesh::Blocks;
 
 pub const FORMAT: Format = Format {
     name: "volume-vts",
@@ -14,6 +13,6 @@ pub const FORMAT: Format = Format {
     ..Format::VOLUME
 };
 
-fn encode(blocks: &Blocks, name: &FileName<'_>) -> Result<Vec<NamedFile>, WriteError> {
-    Ok(name.renamed("vts", vtk::block_files(blocks, name.stem())?))
+fn encode(cells: &SolidCells<'_>, name: &FileName<'_>) -> Result<Vec<NamedFile>, WriteError> {
+    Ok(name.renamed("vts", vtk::block_files(cells.blocks, name.stem())?))
 }

@@ -4,8 +4,8 @@ mod spline_patches;
 
 use moldloft_document::{Document, NoFiles, registry};
 use moldloft_export::{
-    FORMATS, Holds, Lids, SymmetryPlanes, WriteOptions, format_named, write, write_blocks,
-    write_grids,
+    FORMATS, Holds, Lids, SolidCells, SymmetryPlanes, WriteOptions, format_named, write,
+    write_blocks, write_grids,
 };
 use moldloft_io::StructuredGrid;
 use moldloft_num::Vec3;
@@ -205,9 +205,10 @@ fn grids_and_blocks_without_a_model() {
     let blocks = brick.blocked().unwrap();
     for format in FORMATS {
         let name = format.file_name("x");
-        let made = write_grids(std::slice::from_ref(&grid), format, &name);
+        let made = write_grids(std::slice::from_ref(&grid), &["s".into()], format, &name);
         assert_eq!(made.is_ok(), format.grids.is_some(), "{}", format.name);
-        let made = write_blocks(&blocks.blocks, format, &name);
+        let cells = SolidCells { blocks: &blocks.blocks, symmetry: "", length: "" };
+        let made = write_blocks(&cells, format, &name);
         assert_eq!(made.is_ok(), format.volume.is_some(), "{}", format.name);
         if let Ok(files) = made {
             assert_eq!(files, write(&mut brick, format, &name, &WriteOptions::default()).unwrap());
@@ -229,7 +230,7 @@ fn the_language_has_a_function_for_each_format_of_grids() {
         let (name, bytes) = model.written().next().unwrap();
         let points = [0, 1, 2, 3, 4, 5].map(|k| Vec3::of((k / 3) as f64, (k % 3) as f64, 0.0));
         let grid = StructuredGrid::surface(2, 3, &points);
-        let files = write_grids(&[grid], format, name).unwrap();
+        let files = write_grids(&[grid], &["s".into()], format, name).unwrap();
         assert_eq!((files[0].name.as_str(), files[0].bytes.as_slice()), (name, bytes));
     }
 }

@@ -1,8 +1,10 @@
-//! HDF5 files, read: groups, their attributes and numbers (HDF5 File Format Specification, version 3).
+//! HDF5 files: groups, their attributes and numbers (HDF5 File Format Specification, version 3).
 //!
-//! All superblocks; groups of both kinds (symbol tables; links in headers and in fractal heaps); numbers stored
+//! Read are all superblocks; groups of both kinds (symbol tables; links in headers and in fractal heaps); numbers stored
 //! compactly, in one piece or in chunks. Compressed numbers, committed types and links into other files are refused by
 //! name. No address or count of a file is trusted: each read stays inside of the bytes, walks are bounded.
+//!
+//! Written (`write`) is one form of each: what HDF5 1.8 and newer reads.
 //!
 //! Own code, though a library reads all of HDF5: that one takes 49 s of processor time to compile, and would be
 //! in the engine of each page; CGNS needs a small part of it.
@@ -13,8 +15,10 @@ mod bytes;
 mod dataset;
 mod header;
 mod links;
+mod write;
 
 pub(crate) use dataset::StoredNumbers;
+pub(crate) use write::{Hdf5Array, Hdf5Attribute, Hdf5Element, Hdf5Group, Hdf5Object, write};
 
 use crate::ReadError;
 use bytes::{Cursor, fault};

@@ -4,7 +4,7 @@ use super::variant::Variant;
 use super::write::write;
 use crate::error::{check_blocks, check_positions};
 use crate::{StructuredGrid, WriteError};
-use moldloft_mesh::{Block, Blocks, Mesh};
+use moldloft_mesh::{Block, Blocks, HexBlock, Mesh};
 use moldloft_num::Vec3;
 
 /// The structured patches with their names.
@@ -28,11 +28,9 @@ pub(crate) fn structured_patches(mesh: &Mesh) -> Result<Vec<(&str, &Block)>, Wri
 /// the variant cannot hold, see [`write()`].
 pub fn write_mesh(mesh: &Mesh, variant: Variant) -> Result<Vec<u8>, WriteError> {
     check_positions(mesh, f64::MAX)?;
-    let grid = |(_, b): (&str, &Block)| {
-        let vertices = (0..b.nv).flat_map(|j| (0..b.nu).map(move |i| b.at(i, j)));
-        of_vertices(mesh.positions(), [b.nu, b.nv, 1], vertices)
-    };
-    let grids: Vec<StructuredGrid> = structured_patches(mesh)?.into_iter().map(grid).collect();
+    let patches = structured_patches(mesh)?.into_iter();
+    let grids: Vec<StructuredGrid> =
+        patches.map(|(_, block)| of_patch(mesh.positions(), block)).collect();
     write(&grids, variant)
 }
 
@@ -43,13 +41,22 @@ pub fn write_mesh(mesh: &Mesh, variant: Variant) -> Result<Vec<u8>, WriteError> 
 /// variant cannot hold, see [`write()`].
 pub fn write_blocks(blocks: &Blocks, variant: Variant) -> Result<Vec<u8>, WriteError> {
     check_blocks(blocks, f64::MAX)?;
-    let grids = blocks.blocks().iter().map(|b| {
-        let [nu, nv, nw] = b.size;
-        let across = (0..nw).flat_map(|k| (0..nv).map(move |j| (j, k)));
-        let along = across.flat_map(|(j, k)| (0..nu).map(move |i| [i, j, k]));
-        of_vertices(blocks.positions(), b.size, along.map(|place| b.at(place)))
-    });
+    let grids = blocks.blocks().iter().map(|b| of_block(blocks.positions(), b));
     write(&grids.collect::<Vec<_>>(), variant)
+}
+
+/// The points of a structured patch.
+pub(crate) fn of_patch(positions: &[Vec3], b: &Block) -> StructuredGrid {
+    let vertices = (0..b.nv).flat_map(|j| (0..b.nu).map(move |i| b.at(i, j)));
+    of_vertices(positions, [b.nu, b.nv, 1], vertices)
+}
+
+/// The points of a block.
+pub(crate) fn of_block(positions: &[Vec3], b: &HexBlock) -> StructuredGrid {
+    let [nu, nv, nw] = b.size;
+    let across = (0..nw).flat_map(|k| (0..nv).map(move |j| (j, k)));
+    let along = across.flat_map(|(j, k)| (0..nu).map(move |i| [i, j, k]));
+    of_vertices(positions, b.size, along.map(|place| b.at(place)))
 }
 
 /// The grid whose points, i fastest, are these vertices.

@@ -19,7 +19,7 @@ pub use read::read;
 pub use variant::{Laid, Variant};
 pub use write::write;
 
-pub(crate) use mesh::structured_patches;
+pub(crate) use mesh::{of_block, of_patch, structured_patches};
 
 #[cfg(test)]
 mod tests;

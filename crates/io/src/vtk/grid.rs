@@ -95,7 +95,7 @@ pub fn grid_with_fields(
     block: &StructuredGrid,
     fields: &[VtkArray],
 ) -> Result<Vec<u8>, WriteError> {
-    StructuredGrid::check(std::slice::from_ref(block), f64::MAX)?;
+    StructuredGrid::check([block], f64::MAX)?;
     if fields.iter().any(|f| f.values.len() != f.components * block.count()) {
         return Err(WriteError::CannotHold { format: "VTK", what: "a field of another size" });
     }

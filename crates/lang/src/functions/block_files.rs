@@ -1,9 +1,10 @@
-//! Blocks as one mesh with named boundaries: joints, periodic boundaries, and the data for CGNS.
+//! Blocks as one mesh with named boundaries: joints and periodic boundaries.
 
 use crate::functions::hanging::{HangingJoint, hanging};
-use crate::functions::named_blocks::{FacePart, NamedBlock, face_points};
+use crate::functions::named_blocks::{NamedBlock, face_points};
 use moldloft_diag::Diagnostic;
 use moldloft_grid::{FaceNames, GridFace, HexMesh, VolumeGrid, shared_nodes};
+use moldloft_io::cgns::{BlockJoint, FacePart};
 use moldloft_io::hexahedra::{PeriodicPartner, Periodicity};
 use moldloft_io::{StructuredGrid, WriteError};
 use moldloft_mesh::{Blocks, HexBlock};
@@ -12,24 +13,6 @@ use std::collections::HashMap;
 
 pub(crate) const BOUNDARY_KINDS: [&str; 9] =
     ["wall", "symmetry", "farfield", "inflow", "outflow", "periodic", "empty", "wedge", "patch"];
-
-/// A periodic joint of CGNS: the centre and the angles of a rotation, in radians, and a translation.
-pub type PeriodicJoint = ([f64; 3], [f64; 3], [f64; 3]);
-
-/// Both sides of a joint; for each axis of the first, the axis of the second, from 1, negative if
-/// opposite; and the position of the second relative to the first, if periodic.
-pub type BlockJoint = (FacePart, FacePart, [i32; 3], Option<PeriodicJoint>);
-
-/// Content of a CGNS file besides points.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct CgnsBlocks {
-    /// Names of the blocks.
-    pub names: Vec<String>,
-    /// Joints of blocks.
-    pub joints: Vec<BlockJoint>,
-    /// Boundaries: position, name and type.
-    pub boundaries: Vec<(FacePart, String, String)>,
-}
 
 /// A face that lies on another one, with points that are not the same.
 pub(crate) struct AbuttingFaces {
@@ -41,7 +24,9 @@ pub(crate) struct AbuttingFaces {
 }
 
 pub(crate) struct Connected {
-    pub content: CgnsBlocks,
+    pub joints: Vec<BlockJoint>,
+    /// Boundaries: position, name and type.
+    pub boundaries: Vec<(FacePart, String, String)>,
     pub partners: Vec<PeriodicPartner>,
     /// Parts of faces without a neighbour or a name.
     pub nameless: Vec<FacePart>,
@@ -235,11 +220,7 @@ pub(crate) fn connected(blocks: &[NamedBlock]) -> Result<Connected, Diagnostic> 
     let (joints, free) = all.interfaces();
     let joints = joints.iter().map(|joint| {
         let side = |k: usize| (joint.sides[k].0, joint.sides[k].1, joint.from[k], joint.to[k]);
-        let transform = joint.axes.map(|(axis, against)| {
-            let number = axis as i32 + 1;
-            if against { -number } else { number }
-        });
-        (side(0), side(1), transform, None)
+        (side(0), side(1), joint.transform(), None)
     });
     let mut joints: Vec<BlockJoint> = joints.collect();
     let (mut boundaries, mut nameless, mut periodic) = (Vec::new(), Vec::new(), Vec::new());
@@ -258,11 +239,9 @@ pub(crate) fn connected(blocks: &[NamedBlock]) -> Result<Connected, Diagnostic> 
     }
     let (of_pairs, partners) = paired(blocks, periodic)?;
     joints.extend(of_pairs);
-    let names = blocks.iter().map(|block| block.name.clone()).collect();
-    let content = CgnsBlocks { names, joints, boundaries };
     let size = volumes(blocks).iter().map(VolumeGrid::extent).fold(0.0, f64::max);
     let hanging = hanging(blocks, &nameless, SAME * size);
-    Ok(Connected { content, partners, nameless, hanging, abutting: Vec::new() })
+    Ok(Connected { joints, boundaries, partners, nameless, hanging, abutting: Vec::new() })
 }
 
 /// Refuses a boundary of two types.

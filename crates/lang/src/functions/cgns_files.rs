@@ -1,40 +1,22 @@
 //! CGNS files read: their zones as surfaces and blocks.
-//!
-//! A file that the same run has written is not CGNS yet (the host makes it): its blocks and names are at hand.
 
 use crate::run::interpreter::Interpreter;
 use crate::source::module::Module;
 use crate::value::variables::Called as _;
 use moldloft_diag::{Diagnostic, nearest};
-use moldloft_io::cgns::{self, CgnsZone};
-use moldloft_io::plot3d;
+use moldloft_io::{NamedGrid, cgns};
 use moldloft_registry::{Scalar, Value};
 use moldloft_syntax::sdl::ExprId;
 
 impl<T: Scalar> Interpreter<'_, '_, T> {
     /// The zones of a file, and its name.
-    fn zones(&mut self, m: &Module, file: ExprId) -> Result<(String, Vec<CgnsZone>), Diagnostic> {
+    fn zones(&mut self, m: &Module, file: ExprId) -> Result<(String, Vec<NamedGrid>), Diagnostic> {
         let (path, bytes) = self.bytes_of(m, file)?;
-        let unreadable = |e: &dyn std::fmt::Display| {
-            Diagnostic::error("cannot-read", format!("cannot read `{path}`: {e}"))
-                .at(m.program[file].span)
-        };
-        let zones = match self.env.files.cgns_of(&path) {
-            Some(own) => {
-                let (blocks, _) = plot3d::read(&bytes).map_err(|e| unreadable(&e))?;
-                let named = |(grid, name): (moldloft_io::StructuredGrid, &String)| CgnsZone {
-                    // Surfaces are written under such names.
-                    name: if grid.size[2] == 1 { format!("Z_{name}") } else { name.clone() },
-                    grid,
-                };
-                blocks.into_iter().zip(&own.names).map(named).collect()
-            }
-            None => {
-                let span = m.program[file].span;
-                let zones = self.apart(bytes.len(), span, move || cgns::read(&bytes))?;
-                zones.map_err(|e| unreadable(&e))?
-            }
-        };
+        let span = m.program[file].span;
+        let zones = self.apart(bytes.len(), span, move || cgns::read(&bytes))?;
+        let zones = zones.map_err(|e| {
+            Diagnostic::error("cannot-read", format!("cannot read `{path}`: {e}")).at(span)
+        })?;
         Ok((path.to_string(), zones))
     }
 
@@ -49,7 +31,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             None => Some(0),
             Some(&arg) => match self.operand(m, arg)? {
                 Value::Text(name) => {
-                    let spelled = |zone: &CgnsZone| {
+                    let spelled = |zone: &NamedGrid| {
                         zone.name == *name || zone.name.strip_prefix("Z_") == Some(&*name)
                     };
                     let Some(at) = zones.iter().position(spelled) else {

@@ -3,7 +3,6 @@
 //! A file is a unit number, as in FORTRAN. Texts only: a point on each line, numbers with all their
 //! digits, the first index of a grid fastest. Whatever is written can be read again in the same run.
 
-use crate::functions::block_files::CgnsBlocks;
 use crate::source::world::World;
 use indexmap::IndexMap;
 use moldloft_diag::Diagnostic;
@@ -39,8 +38,6 @@ pub fn predeclared(name: &str) -> Option<f64> {
 pub struct RunFiles {
     open: BTreeMap<u32, OpenFile>,
     written: IndexMap<String, Vec<u8>>,
-    /// Files that the host converts to CGNS, with data about their blocks.
-    cgns: IndexMap<String, CgnsBlocks>,
     bytes: usize,
 }
 
@@ -152,7 +149,6 @@ impl RunFiles {
                     )
                     .help("close it first"));
                 }
-                self.cgns.shift_remove(&name);
                 let file = self.written.entry(name.clone()).or_default();
                 if mode == OpenMode::Write {
                     self.bytes -= file.len();
@@ -183,7 +179,6 @@ impl RunFiles {
             let message = format!("`{name}` is open for writing already");
             return Err(Diagnostic::error("unit-in-use", message).help("close it first"));
         }
-        self.cgns.shift_remove(&name);
         let replaced = self.written.get(&name).map_or(0, Vec::len);
         self.bytes = self.bytes - replaced + bytes.len();
         if self.bytes > MOST_BYTES {
@@ -191,22 +186,6 @@ impl RunFiles {
         }
         self.written.insert(name, bytes);
         Ok(())
-    }
-
-    /// Marks a written file for conversion to CGNS by the host, with these blocks.
-    pub fn for_cgns(&mut self, path: &str, blocks: CgnsBlocks) -> Result<(), Diagnostic> {
-        self.cgns.insert(inside(path)?, blocks);
-        Ok(())
-    }
-
-    /// Data about the blocks of a file that the host converts to CGNS.
-    pub(crate) fn cgns_of(&self, path: &str) -> Option<&CgnsBlocks> {
-        self.cgns.get(&inside(path).ok()?)
-    }
-
-    /// The files that the host converts to CGNS; their content is Plot3D.
-    pub fn cgns(&self) -> impl Iterator<Item = (&str, &CgnsBlocks)> {
-        self.cgns.iter().map(|(name, blocks)| (name.as_str(), blocks))
     }
 
     /// Closes a unit; a unit that is not open is an error.

@@ -7,10 +7,11 @@ use crate::functions::block_files::{
 use crate::functions::grid_formats::GridFormat;
 use crate::functions::hanging::HangingJoint;
 use crate::functions::joint_report::part_text;
-use crate::functions::named_blocks::{FacePart, NamedBlock};
+use crate::functions::named_blocks::NamedBlock;
 use moldloft_diag::Diagnostic;
 use moldloft_grid::{GridFace, SurfaceGrid, VolumeGrid, folded_cells};
 use moldloft_io::StructuredGrid;
+use moldloft_io::cgns::FacePart;
 use moldloft_io::hexahedra::is_plane;
 use moldloft_num::{Box3, Vec3, nearest_on_triangle};
 
@@ -133,7 +134,7 @@ fn volume(block: &NamedBlock, format: &GridFormat, found: &mut Vec<Diagnostic>) 
 /// Refuses blocks on the same side of a common face: they overlap.
 fn overlaps(blocks: &[NamedBlock], connected: &Connected) -> Result<(), Diagnostic> {
     let volumes: Vec<f64> = volumes(blocks).iter().map(VolumeGrid::volume).collect();
-    for joint in &connected.content.joints {
+    for joint in &connected.joints {
         if !are_across(joint, &volumes) {
             let [a, b] = [joint.0, joint.1].map(|side| {
                 format!("{} of `{}`", GridFace::ALL[side.1].word(), blocks[side.0].name)

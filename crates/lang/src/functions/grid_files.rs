@@ -1,12 +1,11 @@
 //! Built-in functions that write arrays of points as grid files and read such files.
 //!
-//! Files are whole: each call writes one, into the set that the host commits. CGNS is HDF5, which the
-//! host writes: the run keeps the blocks and their names for it.
+//! Files are whole: each call writes one, into the set that the host commits.
 
 use crate::functions::block_files::face_names;
 use crate::functions::builtins::RowFormat;
 use crate::functions::grid_checks;
-use crate::functions::grid_formats::{CONNECTIONS, EncodedFiles, GridFile, GridFormat};
+use crate::functions::grid_formats::{CONNECTIONS, GridFile, GridFormat};
 use crate::functions::grid_values::grid_of;
 use crate::functions::joint_report::joint_report;
 use crate::functions::named_blocks::NamedBlock;
@@ -146,12 +145,8 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             let span = if d.id == "unknown-word" { words_at } else { at_name };
             d.or_at(span)
         };
-        let EncodedFiles { files, cgns } = encoded.map_err(place)?;
-        for (name, bytes) in files {
+        for (name, bytes) in encoded.map_err(place)? {
             self.env.files.put(&name, bytes).map_err(place)?;
-        }
-        if let Some(content) = cgns {
-            self.env.files.for_cgns(&path, content).map_err(place)?;
         }
         Ok(())
     }

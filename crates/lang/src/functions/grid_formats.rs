@@ -1,7 +1,7 @@
 //! The formats of grid files that programs write: one row each.
 
 use crate::functions::block_files::{
-    CgnsBlocks, Connected, connected, extruded, merged, one_mesh, volumes, whole,
+    Connected, connected, extruded, merged, one_mesh, volumes, whole,
 };
 use crate::functions::named_blocks::NamedBlock;
 use crate::functions::plots::plot;
@@ -16,7 +16,7 @@ use moldloft_io::neutral_map::neutral_map;
 use moldloft_io::plot3d::{self, Laid, Variant};
 use moldloft_io::quadrilaterals::{self, PlaneMesh};
 use moldloft_io::ugrid::{UgridLayout, mapbc, ugrid};
-use moldloft_io::{StructuredGrid, WriteError, hexahedra, openfoam, points, stl, vtk};
+use moldloft_io::{StructuredGrid, WriteError, cgns, hexahedra, openfoam, points, stl, vtk};
 use moldloft_num::Vec3;
 
 /// Content to write, with the words that select variants of the format.
@@ -30,12 +30,8 @@ pub(crate) struct GridFile<'a> {
     pub budget: &'a Budget,
 }
 
-/// Files of a call, and data about the blocks of a CGNS file.
-#[derive(Default)]
-pub(crate) struct EncodedFiles {
-    pub files: Vec<(String, Vec<u8>)>,
-    pub cgns: Option<CgnsBlocks>,
-}
+/// Files of a call: their names and contents.
+pub(crate) type EncodedFiles = Vec<(String, Vec<u8>)>;
 
 #[derive(Debug)]
 pub(crate) struct GridFormat {
@@ -112,8 +108,14 @@ pub(crate) static STL: GridFormat =
 pub(crate) static CSV: GridFormat = PLAIN;
 
 /// `write_cgns`.
-pub(crate) static CGNS: GridFormat =
-    GridFormat { blocks: true, joins: true, hangs: true, keeps_order: true, encode: cgns, ..PLAIN };
+pub(crate) static CGNS: GridFormat = GridFormat {
+    blocks: true,
+    joins: true,
+    hangs: true,
+    keeps_order: true,
+    encode: cgns_file,
+    ..PLAIN
+};
 
 /// `write_su2`.
 pub(crate) static SU2: GridFormat = GridFormat { encode: su2, ..JOINED_MESH };
@@ -199,7 +201,7 @@ fn stem(name: &str) -> &str {
 }
 
 fn one(path: &str, bytes: Vec<u8>) -> EncodedFiles {
-    EncodedFiles { files: vec![(path.to_string(), bytes)], cgns: None }
+    vec![(path.to_string(), bytes)]
 }
 
 /// True when the only word that there may be is given.
@@ -238,7 +240,7 @@ fn vts(file: GridFile<'_>) -> Result<EncodedFiles, Diagnostic> {
     let (blocks, _) = grids(file.blocks);
     let written = vtk::grid_files(&blocks, stem(file.path)).map_err(cannot)?;
     let named = |part: vtk::NamedFile| (format!("{folder}{}", part.name), part.bytes);
-    Ok(EncodedFiles { files: written.into_iter().map(named).collect(), cgns: None })
+    Ok(written.into_iter().map(named).collect())
 }
 
 fn picture(file: GridFile<'_>) -> Result<EncodedFiles, Diagnostic> {
@@ -282,7 +284,7 @@ fn are_flat(blocks: &[NamedBlock]) -> Result<bool, Diagnostic> {
     Ok(flat > 0)
 }
 
-fn cgns(file: GridFile<'_>) -> Result<EncodedFiles, Diagnostic> {
+fn cgns_file(file: GridFile<'_>) -> Result<EncodedFiles, Diagnostic> {
     option(&file, "")?;
     let flat = are_flat(&file.blocks)?;
     let refused = ["empty", "wedge"];
@@ -296,13 +298,14 @@ fn cgns(file: GridFile<'_>) -> Result<EncodedFiles, Diagnostic> {
             ));
         }
     }
-    let (blocks, names) = grids(file.blocks);
-    let bytes = plot3d::write(&blocks, Variant::default()).map_err(cannot)?;
-    let content = match (flat, file.connected) {
-        (false, Some(connected)) => connected.content,
-        _ => CgnsBlocks { names, ..CgnsBlocks::default() },
+    let (title, (grids, names)) = (stem(file.path), grids(file.blocks));
+    let bytes = match file.connected {
+        Some(Connected { joints, boundaries, .. }) => {
+            cgns::write_volume(&grids, &names, joints, &boundaries, title)
+        }
+        None => cgns::write_surfaces(&grids, &names, title, cgns::USUAL_TOLERANCE),
     };
-    Ok(EncodedFiles { cgns: Some(content), ..one(file.path, bytes) })
+    Ok(one(file.path, bytes.map_err(cannot)?))
 }
 
 /// The name of the two sides that a plane grid has as a layer of cells.
@@ -437,7 +440,6 @@ fn graded_mesh(
     let blocks: Vec<NamedBlock> = blocks.into_iter().zip(volumes).map(turned).collect();
     let entries = openfoam::boundary_entries(mesh, partners);
     let patches: Vec<GradedPatch> = connected(&blocks)?
-        .content
         .boundaries
         .into_iter()
         .filter_map(|((block, face, from, to), name, _)| {
@@ -456,7 +458,7 @@ fn poly_mesh(file: GridFile<'_>) -> Result<EncodedFiles, Diagnostic> {
     let (_, mesh, partners) = foam_mesh(file)?;
     let parts = openfoam::poly_mesh(&mesh, &partners).map_err(cannot)?;
     let named = |(name, bytes): openfoam::FoamFile| (format!("{folder}/{name}"), bytes);
-    Ok(EncodedFiles { files: parts.into_iter().map(named).collect(), cgns: None })
+    Ok(parts.into_iter().map(named).collect())
 }
 
 /// Refuses surfaces in a file of blocks.
@@ -472,7 +474,7 @@ fn neutral_map_file(file: GridFile<'_>) -> Result<EncodedFiles, Diagnostic> {
     option(&file, "")?;
     blocks_only(&file)?;
     let sizes: Vec<[usize; 3]> = file.blocks.iter().map(|block| block.grid.size).collect();
-    let Some(connected) = &file.connected else { return Ok(EncodedFiles::default()) };
+    let Some(connected) = &file.connected else { return Ok(Vec::new()) };
     let entries = map_entries(&file.blocks, connected)?;
     Ok(one(file.path, neutral_map(&sizes, &entries)))
 }
@@ -497,6 +499,5 @@ fn ugrid_file(file: GridFile<'_>) -> Result<EncodedFiles, Diagnostic> {
     let conditions = conditions(&mesh)?;
     let grid = whole(ugrid(&mesh, *layout), &mesh, "UGRID")?;
     let named = format!("{}.mapbc", file.path.trim_end_matches(ending));
-    let files = vec![(file.path.to_string(), grid), (named, mapbc(&conditions))];
-    Ok(EncodedFiles { files, cgns: None })
+    Ok(vec![(file.path.to_string(), grid), (named, mapbc(&conditions))])
 }

@@ -1,6 +1,7 @@
 //! Hanging interfaces: two faces that are one, whose cells divide each other.
 
-use crate::functions::named_blocks::{FacePart, NamedBlock, face_points};
+use crate::functions::named_blocks::{NamedBlock, face_points};
+use moldloft_io::cgns::FacePart;
 use moldloft_num::{Box3, Vec3, nearest_on_triangle};
 
 /// Two parts of faces with the same corners. Along each axis the cells of one are whole multiples of those of the other, and

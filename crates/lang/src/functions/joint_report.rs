@@ -1,8 +1,9 @@
 //! `interfaces`: the connections and boundaries of blocks as text.
 
 use crate::functions::block_files::Connected;
-use crate::functions::named_blocks::{FacePart, NamedBlock};
+use crate::functions::named_blocks::NamedBlock;
 use moldloft_grid::GridFace;
+use moldloft_io::cgns::FacePart;
 use std::fmt::Write;
 
 /// A part of a face, with its index ranges from 1.
@@ -30,7 +31,7 @@ pub(super) fn joint_report(blocks: &[NamedBlock], connected: &Connected, flat: b
     let axes = if flat { 2 } else { 3 };
     let part = |of: &FacePart| part_text(blocks, flat, of);
     let mut lines = Vec::new();
-    for (own, other, transform, movement) in &connected.content.joints {
+    for (own, other, transform, movement) in &connected.joints {
         let axis = |k: usize| {
             let name = ["i", "j", "k"][transform[k].unsigned_abs() as usize - 1];
             if transform[k] < 0 { format!("-{name}") } else { name.to_string() }
@@ -74,7 +75,7 @@ pub(super) fn joint_report(blocks: &[NamedBlock], connected: &Connected, flat: b
         ));
     }
     let is_side = |of: &FacePart| flat && of.1 > 3;
-    for (of, name, kind) in &connected.content.boundaries {
+    for (of, name, kind) in &connected.boundaries {
         if is_side(of) || connected.is_hanging(of) {
             continue;
         }

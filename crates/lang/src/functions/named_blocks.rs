@@ -2,6 +2,7 @@
 
 use moldloft_grid::{FaceNames, GridFace};
 use moldloft_io::StructuredGrid;
+use moldloft_io::cgns::FacePart;
 use moldloft_num::Vec3;
 
 /// A block that is written, and the names of its faces.
@@ -11,9 +12,6 @@ pub(crate) struct NamedBlock {
     pub name: String,
     pub faces: FaceNames,
 }
-
-/// A part of a face of a block: block, face in the order of [`GridFace::ALL`], first and last node (i, j, k) from 0.
-pub type FacePart = (usize, usize, [usize; 3], [usize; 3]);
 
 /// The points of a part of a face, the first of its two axes slowest, and the numbers of points along them.
 pub(super) fn face_points(

@@ -1,9 +1,10 @@
 //! Boundary conditions by the names and numbers of FUN3D, and files that need them: neutral maps and UGRID.
 
 use crate::functions::block_files::Connected;
-use crate::functions::named_blocks::{FacePart, NamedBlock, face_points};
+use crate::functions::named_blocks::{NamedBlock, face_points};
 use moldloft_diag::Diagnostic;
 use moldloft_grid::{GridFace, HexMesh};
+use moldloft_io::cgns::FacePart;
 use moldloft_io::neutral_map::{MapEntry, MapFace};
 use moldloft_num::{Box3, Vec3};
 
@@ -77,7 +78,6 @@ pub(super) fn map_entries(
     blocks: &[NamedBlock],
     connected: &Connected,
 ) -> Result<Vec<MapEntry>, Diagnostic> {
-    let content = &connected.content;
     for (block, of) in blocks.iter().enumerate() {
         let found = (0..6).find(|&face| is_pole(of, face));
         if let Some(face) = found {
@@ -93,7 +93,7 @@ pub(super) fn map_entries(
     }
     let face = |(block, face, from, to): FacePart| MapFace { block, face, from, to };
     let mut entries = Vec::new();
-    for (own, other, transform, movement) in &content.joints {
+    for (own, other, transform, movement) in &connected.joints {
         if movement.is_some() {
             return Err(Diagnostic::error(
                 "cannot-write",
@@ -104,7 +104,7 @@ pub(super) fn map_entries(
         let axes = transform.map(|axis| axis.unsigned_abs() as usize - 1);
         entries.push(MapEntry::Joined([face(*own), face(*other)], axes));
     }
-    for (part, name, kind) in &content.boundaries {
+    for (part, name, kind) in &connected.boundaries {
         let word = match &**kind {
             "patch" => name.clone(),
             kind => condition(name, kind, face_points(blocks, part).0)?.1.to_string(),

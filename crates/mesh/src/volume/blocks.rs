@@ -185,7 +185,7 @@ impl<T: Real> Blocks<T> {
     /// Interfaces of blocks, by the identity of their vertices, ordered by their first sides; and
     /// the parts of faces on the boundary.
     pub fn interfaces(&self) -> (Vec<Interface>, Vec<Boundary>) {
-        super::interface::find(&self.blocks)
+        super::interface::interfaces_of(&self.blocks, 6)
     }
 
     /// The blocks of real parts.

@@ -18,6 +18,16 @@ pub struct Interface {
     pub axes: [(usize, bool); 3],
 }
 
+impl Interface {
+    /// For each axis of the first block, the axis of the second, from 1, negative if reversed; as in CGNS.
+    pub fn transform(&self) -> [i32; 3] {
+        self.axes.map(|(axis, against)| {
+            let number = axis as i32 + 1;
+            if against { -number } else { number }
+        })
+    }
+}
+
 /// A rectangle of a face without a neighbour.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Boundary {
@@ -69,14 +79,16 @@ struct Rectangle {
 /// The faces of all blocks, panel by panel.
 struct BlockFaces<'a> {
     blocks: &'a [HexBlock],
+    /// Number of faces of each block that may join.
+    faces: usize,
     /// Panels with three or four corners by their corners, in ascending order.
     by_corners: HashMap<[u32; 4], Vec<Place>>,
     taken: HashSet<Place>,
 }
 
 impl<'a> BlockFaces<'a> {
-    fn new(blocks: &'a [HexBlock]) -> Self {
-        let mut faces = Self { blocks, by_corners: HashMap::new(), taken: HashSet::new() };
+    fn new(blocks: &'a [HexBlock], faces: usize) -> Self {
+        let mut faces = Self { blocks, faces, by_corners: HashMap::new(), taken: HashSet::new() };
         for place in faces.places() {
             if let Some(corners) = faces.corners(place) {
                 faces.by_corners.entry(corners).or_default().push(place);
@@ -89,7 +101,7 @@ impl<'a> BlockFaces<'a> {
     fn places(&self) -> Vec<Place> {
         let mut places = Vec::new();
         for (b, block) in self.blocks.iter().enumerate() {
-            for face in 0..6 {
+            for face in 0..self.faces {
                 if block.face_panels(face).is_empty() {
                     continue;
                 }
@@ -186,12 +198,13 @@ impl<'a> BlockFaces<'a> {
     }
 }
 
-/// All interfaces of `blocks`, ordered by their first sides; and the boundary.
+/// All interfaces of the first `faces` faces of `blocks` (4 for the edges of surfaces that are blocks of one layer,
+/// 6 for all), ordered by their first sides; and the boundary.
 ///
 /// Panels are matched by the identity of their vertices. More than two with the same vertices are
 /// not an interface.
-pub fn find(blocks: &[HexBlock]) -> (Vec<Interface>, Vec<Boundary>) {
-    let mut faces = BlockFaces::new(blocks);
+pub fn interfaces_of(blocks: &[HexBlock], faces: usize) -> (Vec<Interface>, Vec<Boundary>) {
+    let mut faces = BlockFaces::new(blocks, faces);
     let mut found = Vec::new();
     for own in faces.places() {
         if faces.taken.contains(&own) {
@@ -319,7 +332,7 @@ mod tests {
         for j in 0..4 {
             ring.vertices[16 + j] = ring.vertices[j];
         }
-        let (interfaces, free) = super::find(&[ring]);
+        let (interfaces, free) = super::interfaces_of(&[ring], 6);
         assert_eq!((interfaces.len(), free.len()), (1, 4));
         assert_eq!(interfaces[0].sides, [(0, 0), (0, 1)]);
         assert_eq!(interfaces[0].axes, [(0, false), (1, false), (2, false)]);
@@ -336,7 +349,7 @@ mod tests {
             left.vertices[(i * 2 + j) * 2] = top(i);
             right.vertices[((2 - i) * 2 + j) * 2] = top(i + 2);
         }
-        let (found, free) = super::find(&[long, left, right]);
+        let (found, free) = super::interfaces_of(&[long, left, right], 6);
         let ends: Vec<_> = found.iter().map(|i| (i.sides, i.from, i.to)).collect();
         assert_eq!(
             ends,
@@ -356,7 +369,7 @@ mod tests {
         for (k, brick) in bricks.iter_mut().enumerate() {
             brick.vertices[4..].iter_mut().for_each(|v| *v += 100 * k as u32);
         }
-        let (found, free) = super::find(&bricks);
+        let (found, free) = super::interfaces_of(&bricks, 6);
         assert_eq!((found.len(), free.len()), (0, 18));
     }
 }

@@ -7,7 +7,7 @@ mod report;
 
 pub use blocks::{BlockFace, Blocks, HexBlock};
 pub use cell::Hexahedron;
-pub use interface::{Boundary, Interface};
+pub use interface::{Boundary, Interface, interfaces_of};
 pub use report::{BadCell, BlockQuality, BlocksReport};
 
 #[cfg(test)]

@@ -1,16 +1,7 @@
-//! Structured zones of CGNS files: their names and points (SIDS 4.4 in its mapping to HDF5).
+//! Names and points of the zones of CGNS files.
 
 use crate::hdf5::{Hdf5File, Link, StoredNumbers, StoredObject};
-use crate::{FilePosition, ReadError, StructuredGrid};
-
-/// A zone.
-#[derive(Clone, Debug, PartialEq)]
-pub struct CgnsZone {
-    /// Its name.
-    pub name: String,
-    /// Its points; a surface has one layer.
-    pub grid: StructuredGrid,
-}
+use crate::{FilePosition, NamedGrid, ReadError, StructuredGrid};
 
 fn fault(zone: usize, expected: impl Into<String>, found: impl Into<String>) -> ReadError {
     ReadError {
@@ -54,7 +45,7 @@ fn data(file: &Hdf5File<'_>, node: StoredObject) -> Result<Option<StoredNumbers>
 /// # Errors
 /// [`ReadError`] for other files (those in the old ADF among them), unstructured zones, zones without Cartesian
 /// coordinates, coordinates in other files or compressed.
-pub fn read(bytes: &[u8]) -> Result<Vec<CgnsZone>, ReadError> {
+pub fn read(bytes: &[u8]) -> Result<Vec<NamedGrid>, ReadError> {
     // The four bytes before it are "@(#)", in most files with the highest bit of each set.
     if bytes.get(4..).is_some_and(|rest| rest.starts_with(b"ADF Database")) {
         return Err(fault(0, "CGNS in HDF5", "CGNS in ADF (`adf2hdf` converts it)"));
@@ -69,7 +60,7 @@ pub fn read(bytes: &[u8]) -> Result<Vec<CgnsZone>, ReadError> {
         for link in labelled(&file, base.to.expect("labelled nodes are here"), "Zone_t")? {
             let number = zones.len() + 1;
             let node = link.to.expect("labelled nodes are here");
-            zones.push(CgnsZone { grid: zone(&file, node, number)?, name: link.name });
+            zones.push(NamedGrid { grid: zone(&file, node, number)?, name: link.name });
         }
     }
     Ok(zones)
