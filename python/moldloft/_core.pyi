@@ -355,6 +355,19 @@ def nurbs_points(
     weights: NDArray[np.float64] | None,
     places: NDArray[np.float64],
 ) -> NDArray[np.float64]: ...
+def aligned_faces(
+    faces: Sequence[tuple[Any, ...]],
+) -> tuple[list[bool], list[tuple[int, int, int, dict[str, Any]]]]: ...
+def common_sides(
+    faces: Sequence[tuple[Any, ...]], near: float
+) -> tuple[
+    list[tuple[str, list[int], list[str], float]],
+    list[tuple[tuple[int, str], tuple[int, str]]],
+    list[int],
+]: ...
+def on_border(
+    surface: tuple[Any, ...], paths: Sequence[tuple[tuple[Any, ...], float]]
+) -> list[dict[str, Any] | None]: ...
 def length_unit(document: Document) -> tuple[str, float]: ...
 def brep(document: Document, accuracy: float | None, stem: str, facing: bool) -> dict[str, Any]: ...
 def vjp(

@@ -85,6 +85,12 @@ class Nurbs:
             tuple(data["angles"]),
         )
 
+    def _data(self) -> tuple[list[int], list[Floats], Floats, Floats | None]:
+        """Degrees, knots, control points ``(n, 3)`` and weights, for the compiled part."""
+        weights = None if self.weights is None else np.ascontiguousarray(self.weights.ravel())
+        net = np.ascontiguousarray(self.points.reshape(-1, 3), dtype=np.float64)
+        return list(self.degrees), list(map(np.ascontiguousarray, self.knots)), net, weights
+
     @property
     def dimension(self) -> int:
         """1 for a curve, 2 for a surface, 3 for a solid."""
@@ -213,13 +219,14 @@ def _braced(items: Sequence[str] | Any) -> str:
 def _wrapped(text: str) -> str:
     """A statement in lines."""
     lines = []
-    while len(text) > _WIDTH:
-        cut = text.rfind(" ", 0, _WIDTH)
-        if cut <= 0:
+    at, indent = 0, ""
+    while len(text) - at > _WIDTH - len(indent):
+        cut = text.rfind(" ", at, at + _WIDTH - len(indent))
+        if cut <= at:
             break
-        lines.append(text[:cut])
-        text = "    " + text[cut + 1 :]
-    return "\n".join([*lines, text])
+        lines.append(indent + text[at:cut])
+        at, indent = cut + 1, "    "
+    return "\n".join([*lines, indent + text[at:]])
 
 
 explain(globals())

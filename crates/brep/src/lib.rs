@@ -16,6 +16,7 @@ mod contacts;
 mod crossing;
 mod foot;
 mod image;
+pub mod imported;
 mod labelled;
 mod meet;
 mod patch;

@@ -20,6 +20,7 @@ mod formats;
 mod gradients;
 mod grids;
 mod implicit;
+mod imported;
 mod language_server;
 mod limits;
 mod mesh;
@@ -70,6 +71,8 @@ mod _core {
     };
     #[pymodule_export]
     use crate::implicit::{PyFacets, PyField, PySet, call_row};
+    #[pymodule_export]
+    use crate::imported::{aligned_faces, common_sides, on_border};
     #[pymodule_export]
     use crate::language_server::{language_engine, language_server};
     #[pymodule_export]

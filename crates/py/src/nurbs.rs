@@ -13,7 +13,10 @@ use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 
 /// A NURBS as a dictionary.
-fn data<'py, const D: usize>(py: Python<'py>, nurbs: &Nurbs<D>) -> PyResult<Bound<'py, PyDict>> {
+pub fn data<'py, const D: usize>(
+    py: Python<'py>,
+    nurbs: &Nurbs<D>,
+) -> PyResult<Bound<'py, PyDict>> {
     let dict = PyDict::new(py);
     dict.set_item("degrees", nurbs.degrees.to_vec())?;
     let knots = nurbs.knots.iter().map(|k| PyArray1::from_slice(py, k));

@@ -8,13 +8,14 @@ from __future__ import annotations
 
 from contextlib import suppress
 from importlib import import_module
+from importlib.machinery import ModuleSpec, PathFinder
 from importlib.metadata import PackageNotFoundError, version
 from importlib.util import find_spec
 from types import ModuleType
 
 from moldloft.errors import MissingPackageError
 
-__all__ = ["identifier", "needed"]
+__all__ = ["check_occt", "identifier", "needed"]
 
 
 def needed(module: str, package: str, purpose: str) -> ModuleType:
@@ -40,9 +41,41 @@ def needed(module: str, package: str, purpose: str) -> ModuleType:
         raise MissingPackageError(
             f"{purpose} needs the package {package}: pip install 'moldloft[cad]' ({error})"
         ) from error
-    if module == "OCP" and find_spec("OCP.collections") is None:
-        raise MissingPackageError(_clash(purpose, package))
+    if module == "OCP":
+        check_occt(purpose)
     return found
+
+
+_OCCT = "cadquery-ocp-novtk"
+"""The package of OCCT."""
+
+
+def check_occt(purpose: str) -> None:
+    """Looks for OCCT without loading it, which takes most of a second.
+
+    Parameters
+    ----------
+    purpose
+        Purpose of the package.
+
+    Raises
+    ------
+    MissingPackageError
+        If it is not installed, or is of another package.
+    """
+    found = find_spec("OCP")
+    if found is None:
+        raise MissingPackageError(
+            f"{purpose} needs the package {_OCCT}: pip install 'moldloft[cad]'"
+        )
+    if not _has_collections(found):
+        raise MissingPackageError(_clash(purpose, _OCCT))
+
+
+def _has_collections(found: ModuleSpec) -> bool:
+    """True for the module of OCCT 8."""
+    places = found.submodule_search_locations
+    return PathFinder.find_spec("OCP.collections", places) is not None
 
 
 def _clash(purpose: str, package: str) -> str:

@@ -18,8 +18,9 @@ from typing import Any
 import numpy as np
 
 from moldloft.budget import limits
-from moldloft.cad import needed
-from moldloft.cad.occt import Imported, ImportedFace, cad_bytes, of_part
+from moldloft.cad import check_occt
+from moldloft.cad.faces import Imported, ImportedFace, ImportedSide
+from moldloft.cad.occt import cad_bytes, of_part
 from moldloft.cad.part21 import StepText
 from moldloft.child_process import ChildProcess, ProcessEnd, bounded, serve
 from moldloft.errors import Error, FileError
@@ -58,7 +59,7 @@ def read(path: Path, metres: float) -> Imported:
     FileError
         If the file is not of its format, contains no shape, or crashes OCCT.
     """
-    needed("OCP", "cadquery-ocp-novtk", "reading STEP and IGES")
+    check_occt("reading STEP and IGES")
     if not sys.executable:
         # A program that embeds Python: there is no interpreter to start.
         return of_part(path, metres, None)
@@ -112,8 +113,8 @@ def _together(parts: list[Imported], metres: float) -> Imported:
                 name += "_"
             taken.add(name)
             face.name = name
-            face.loops = [[(n + first, b, t) for n, b, t in cycle] for cycle in face.loops]
-            last = max([last, *(n for cycle in face.loops for n, _, _ in cycle)])
+            face.renumber(first)
+            last = max([last, *(side.edge for side in face.sides)])
         found.faces += part.faces
         found.remarks += [r for r in part.remarks if r not in found.remarks]
         first = last + 1
@@ -237,7 +238,7 @@ def _imported(answer: dict[str, Any], metres: float) -> Imported:
         ImportedFace(
             face["name"],
             _nurbs(face["surface"]),
-            [[(n, back, _nurbs(t)) for n, back, t in cycle] for cycle in face["loops"]],
+            [[ImportedSide(n, b, _nurbs(t), near) for n, b, t, near in c] for c in face["loops"]],
             face["natural"],
             face["reversed"],
             tuple(face["tags"]),
@@ -264,7 +265,7 @@ def _answer(request: dict[str, Any]) -> dict[str, Any]:
         {
             "name": face.name,
             "surface": _sent(face.surface),
-            "loops": [[(n, bool(b), _sent(t)) for n, b, t in cycle] for cycle in face.loops],
+            "loops": [[(n, bool(b), _sent(t), near) for n, b, t, near in c] for c in face.loops],
             "natural": bool(face.natural),
             "reversed": bool(face.reversed),
             "tags": list(face.tags),

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Mapping
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from moldloft.cad.occt import ImportedFace, border
+from moldloft.cad.faces import ImportedFace, border
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -31,7 +33,7 @@ _KINK = 0.5
 """Turn between two points, in radians, above which it is a kink."""
 
 
-def divisions(faces: list[ImportedFace]) -> dict[str, tuple[int, int]]:
+def divisions(faces: list[ImportedFace], finer: Mapping[str, float]) -> dict[str, tuple[int, int]]:
     """The divisions along u and v, by name, of the faces that cover a whole surface.
 
     Divisions along a common edge of two faces are equal.
@@ -40,6 +42,8 @@ def divisions(faces: list[ImportedFace]) -> dict[str, tuple[int, int]]:
     ----------
     faces
         The faces.
+    finer
+        Factors of the divisions of some faces.
     """
     whole = [face for face in faces if face.natural]
     root = list(range(2 * len(whole)))
@@ -52,9 +56,9 @@ def divisions(faces: list[ImportedFace]) -> dict[str, tuple[int, int]]:
 
     edges: dict[int, list[int]] = {}
     for k, face in enumerate(whole):
-        for number, _, trace in (side for cycle in face.loops for side in cycle):
+        for side in face.sides:
             # An edge at one u runs along v.
-            edges.setdefault(number, []).append(2 * k + (border(trace)[:1] == "u"))
+            edges.setdefault(side.edge, []).append(2 * k + (border(side.trace)[:1] == "u"))
     for sides in edges.values():
         for one, other in pairwise(sides):
             root[first(one)] = first(other)
@@ -62,7 +66,8 @@ def divisions(faces: list[ImportedFace]) -> dict[str, tuple[int, int]]:
     for k, face in enumerate(whole):
         for along in (0, 1):
             at = first(2 * k + along)
-            counts[at] = max(counts[at], _count(face.surface, along))
+            count = math.ceil(finer.get(face.name, 1.0) * _count(face.surface, along))
+            counts[at] = max(counts[at], min(count, _MOST))
     return {
         face.name: (counts[first(2 * k)], counts[first(2 * k + 1)]) for k, face in enumerate(whole)
     }

@@ -4,17 +4,17 @@ from __future__ import annotations
 
 import contextlib
 import re
+from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from moldloft.arguments import explain
-from moldloft.cad.aligning import align
 from moldloft.cad.apart import read
 from moldloft.cad.divisions import divisions
+from moldloft.cad.faces import Imported, ImportedFace, align
 from moldloft.cad.joining import joins
-from moldloft.cad.occt import Imported, ImportedFace
 from moldloft.colours import MODEL
 from moldloft.errors import Error, FileError
 from moldloft.nurbs import Nurbs, _braced, _plain, _wrapped
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
     from moldloft.models import Model
 
-__all__ = ["UNITS", "load_cad", "program"]
+__all__ = ["UNITS", "imported", "load_cad", "program"]
 
 UNITS = {"m": 1.0, "cm": 0.01, "mm": 0.001, "ft": 0.3048, "in": 0.0254}
 """Units of length in metres."""
@@ -52,6 +52,20 @@ def program(path: str | os.PathLike[str], *, units: str = "m") -> tuple[str, lis
     FormatError
         If the file cannot be read.
     """
+    text, _, remarks = imported(path, units=units)
+    return text, remarks
+
+
+def imported(path: str | os.PathLike[str], *, units: str = "m") -> tuple[str, Model, list[str]]:
+    """A CAD file as a program, its model, and remarks; see :func:`program`.
+
+    Parameters
+    ----------
+    path
+        A STEP, IGES, 3DM or BREP file.
+    units
+        The unit of length of the model.
+    """
     if units not in UNITS:
         raise Error(f"unknown unit `{units}`; expected one of: {', '.join(UNITS)}")
     path = Path(path)
@@ -62,29 +76,39 @@ def program(path: str | os.PathLike[str], *, units: str = "m") -> tuple[str, lis
     if any(face.colour is not None and not _is_own(face.colour) for face in found.faces):
         found.remarks.append("colours become the nearest of the sixteen of a model")
     # Joins may add remarks.
-    return _loadable(found, path.name, units), found.remarks
+    text, model = _loadable(found, path.name, units)
+    return text, model, found.remarks
 
 
 _MOST_TRIES = 8
 """Maximum number of removals of failed statements before a program is given up."""
 
 
-def _loadable(found: Imported, name: str, units: str) -> str:
-    """A program that loads: statements that fail are omitted, with remarks."""
+def _loadable(found: Imported, name: str, units: str) -> tuple[str, Model]:
+    """A program that loads, and its model: statements that fail are omitted, with remarks."""
     from moldloft.loading import loads
 
     apart: set[str] = set()
+    finer: dict[str, float] = {}
     said = list(found.remarks)
     for _ in range(_MOST_TRIES):
         found.remarks[:] = said
-        text = _text(found, name, units, frozenset(apart))
+        text = _text(found, name, units, frozenset(apart), finer)
         model = loads(text, name=f"{Path(name).stem}.sdl", strict=False)
         # Some of what does not join is noticed when panels are made.
         with contextlib.suppress(Error):
             model.mesh()
         faults = [d for d in model.diagnostics if d.is_error]
         if not faults:
-            return text
+            missed = _missed_areas(found, model)
+            if not missed or any(finer.get(face, 1.0) >= _FINEST for face in missed):
+                found.remarks += [remark for _, remark in missed.values()]
+                return text, model
+            for name_of, (share, _) in missed.items():
+                # What a panel misses is as the square of its size.
+                factor = finer.get(name_of, 1.0) * max(1.2, (1.2 * share / _AREA_PROMISE) ** 0.5)
+                finer[name_of] = min(factor, _FINEST)
+            continue
         words = set().union(*(_blamed(d, text) for d in faults))
         joined = {word for word in words if re.fullmatch(r"join\d+_*", word)} - apart
         lost = [face for face in found.faces if _own_names(face) & words]
@@ -101,6 +125,34 @@ def _loadable(found: Imported, name: str, units: str) -> str:
         else:
             break
     raise FileError(f"cannot read `{name}`: what was read of it makes no model: {faults[0]}")
+
+
+_AREA_PROMISE = 1e-3
+"""Largest relative difference between the area of a face's panels and that of the face."""
+
+
+_FINEST = 16.0
+"""Largest factor of the divisions of a whole face."""
+
+
+def _missed_areas(found: Imported, model: Model) -> dict[str, tuple[float, str]]:
+    """Whole faces whose panels miss more of the area than promised."""
+    missed = {}
+    try:
+        patches = {patch.name: patch for patch in model.mesh().patches}
+    except Error:
+        return {}
+    for face in found.faces:
+        if not face.natural or face.name not in patches:
+            continue
+        area, panels = model[face.name].area, patches[face.name].area
+        if abs(panels - area) > _AREA_PROMISE * area:
+            remark = (
+                f"panels of `{face.name}` have an area of {panels:.6g}, {panels / area - 1:+.1e} "
+                f"of that of the face, {area:.6g}: state finer `divisions`, or a tolerance"
+            )
+            missed[face.name] = (abs(panels / area - 1), remark)
+    return missed
 
 
 def _blamed(fault: Any, text: str) -> set[str]:
@@ -129,18 +181,22 @@ def load_cad(path: str | os.PathLike[str], *, units: str = "m") -> Model:
     """A model of a CAD file; see :func:`program`. Remarks are warnings of Python."""
     import warnings
 
-    from moldloft.loading import loads
-
-    text, remarks = program(path, units=units)
+    _, model, remarks = imported(path, units=units)
     for remark in remarks:
         warnings.warn(f"{path}: {remark}", stacklevel=2)
-    return loads(text, name=f"{Path(path).stem}.sdl")
+    return model
 
 
-def _text(found: Imported, name: str, units: str, apart: frozenset[str]) -> str:
+def _text(
+    found: Imported,
+    name: str,
+    units: str,
+    apart: frozenset[str],
+    finer: Mapping[str, float],
+) -> str:
     lines = [f"# {name}", f'Model info(units = "{units}");']
     taken = {face.name for face in found.faces} | set(found.curves)
-    counts = divisions(found.faces)
+    counts = divisions(found.faces, finer)
     for face in found.faces:
         if face.natural:
             lines += _whole(face, taken, counts[face.name])
@@ -224,12 +280,12 @@ def _trimmed(face: ImportedFace, taken: set[str]) -> list[str]:
     for c, cycle in enumerate(face.loops):
         ends = [f"{face.name}_p{c}_{k}" for k in range(len(cycle))]
         # The magnet at which a side begins is that at which the one before ends.
-        for k, (_, backwards, trace) in enumerate(cycle):
+        for k, (_, backwards, trace, _) in enumerate(cycle):
             start = trace.points[-1 if backwards else 0]
             lines.append(
                 f"AbsMagnet {ends[k]}({base}, {_plain(start[0])}, {_plain(start[1])}, visible = 0);"
             )
-        for k, (_, backwards, trace) in enumerate(cycle):
+        for k, (_, backwards, trace, _) in enumerate(cycle):
             own = trace if not backwards else _turned(trace)
             label = f"{face.name}_s{c}_{k}"
             control = [ends[k], ends[(k + 1) % len(cycle)]]

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+import contextlib
 import io
-import itertools
 import os
 import re
 import sys
@@ -12,14 +12,16 @@ import zipfile
 import zlib
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from moldloft import _core
 from moldloft.budget import limits
 from moldloft.cad import identifier, needed
+from moldloft.cad.faces import Imported, ImportedFace, ImportedSide, border, is_whole
 from moldloft.cad.iges_text import IgesText
 from moldloft.cad.part21 import StepText
 from moldloft.cad.rhino_reading import step_text
@@ -33,16 +35,13 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
 
-__all__ = ["Imported", "ImportedFace", "of_part", "read_shape"]
+__all__ = ["of_part", "read_shape"]
 
 _OUTSIDE = 1e-6
 """Parameters this far outside of a surface's are rounded onto its border."""
 
 _NOTHING = 1e-8
 """A side is left out that spans no more of its surface's parameters."""
-
-_PLACES = 33
-"""Number of points between knots at which a side is compared with an edge of the parameters."""
 
 
 @contextmanager
@@ -106,42 +105,6 @@ def _compound(shapes: list[Any]) -> Any:
     for shape in shapes:
         builder.Add(compound, shape)
     return compound
-
-
-@dataclass
-class ImportedFace:
-    """A face of a CAD file."""
-
-    name: str
-    """A name that objects of a model may have."""
-    surface: Nurbs
-    """Its surface."""
-    loops: list[list[tuple[int, bool, Nurbs]]]
-    """Its loops, the outer one first: edges by number, a flag for each reversed edge, and the curve
-    in the parameters (u, v, 0) of the surface.
-    """
-    natural: bool
-    """True if its loops are the edges of the surface's parameters."""
-    reversed: bool
-    """True if its normal is opposite to that of its surface."""
-    tags: tuple[str, ...] = ()
-    """The products that it is in, from the outermost one, and its body."""
-    colour: tuple[float, float, float] | None = None
-    """sRGB, 0 to 1, of the face or of a shape that contains it."""
-
-
-@dataclass
-class Imported:
-    """Content of a CAD file."""
-
-    faces: list[ImportedFace] = field(default_factory=list)
-    """Its faces."""
-    curves: dict[str, Nurbs] = field(default_factory=dict)
-    """Curves that bound no face."""
-    metres: float = 1.0
-    """The unit of length."""
-    remarks: list[str] = field(default_factory=list)
-    """Omitted or doubtful content."""
 
 
 def cad_bytes(path: Path) -> bytes:
@@ -356,7 +319,7 @@ def _collect(document: Any, shapes: list[Sewn], found: Imported, numbered: dict[
         found.remarks += left_out
         for face in faces:
             # Numbers of edges are those of all shapes of the file.
-            face.loops = [[(n + known, back, t) for n, back, t in own] for own in face.loops]
+            face.renumber(known)
         found.faces += faces
         known += count
         for edge in _loose_edges(shape.shape):
@@ -454,22 +417,34 @@ class _Places:
 
 
 class _Converted:
-    """A shape as NURBS: converted at once, or face by face if that fails in OCCT."""
+    """A shape as NURBS.
+
+    Faces on planes are as they are, the others converted together, or face by face if that fails in
+    OCCT.
+    """
 
     def __init__(self, shape: Any) -> None:
+        from OCP.BRep import BRep_Builder
         from OCP.BRepBuilderAPI import BRepBuilderAPI_NurbsConvert
-        from OCP.TopAbs import TopAbs_EDGE
+        from OCP.TopAbs import TopAbs_EDGE, TopAbs_FACE
+        from OCP.TopoDS import TopoDS_Compound
 
-        self._whole = None
-        try:
-            self._whole = BRepBuilderAPI_NurbsConvert(shape, True)
-            self.edges = map_of(self._whole.Shape(), TopAbs_EDGE)
-        except Exception:
-            self.edges = map_of(shape, TopAbs_EDGE)
+        self.edges = map_of(shape, TopAbs_EDGE)
+        curved = [face for face in faces_of(shape, TopAbs_FACE) if not _is_own(face)]
+        self._together = None
+        if curved:
+            compound = TopoDS_Compound()
+            builder = BRep_Builder()
+            builder.MakeCompound(compound)
+            for face in curved:
+                builder.Add(compound, face)
+            with contextlib.suppress(Exception):
+                # OCCT's own exceptions have no common class here.
+                self._together = BRepBuilderAPI_NurbsConvert(compound, True)
 
     def takes(self, part: Any) -> bool:
         """True if OCCT can convert a face."""
-        if self._whole is not None:
+        if self._together is not None or _is_own(part):
             return True
         try:
             self.face(part)
@@ -481,18 +456,28 @@ class _Converted:
     def face(self, part: Any) -> tuple[Any, Any]:
         """A face as NURBS, with the numbering of its edges."""
         from OCP.BRepBuilderAPI import BRepBuilderAPI_NurbsConvert
-        from OCP.TopAbs import TopAbs_EDGE
+        from OCP.TopAbs import TopAbs_EDGE, TopAbs_FORWARD
         from OCP.TopoDS import TopoDS
 
-        if self._whole is not None:
-            return TopoDS.Face(self._whole.ModifiedShape(part)), self.edges
-        convert = BRepBuilderAPI_NurbsConvert(part, True)
+        if _is_own(part):
+            # Loops are those of the surface's side.
+            return TopoDS.Face(part.Oriented(TopAbs_FORWARD)), self.edges
+        convert = self._together or BRepBuilderAPI_NurbsConvert(part, True)
         own = _Renumbered()
         for edge in faces_of(part, TopAbs_EDGE):
             # An edge that is not of the whole gets a number of its own.
             number = self.edges.FindIndex(edge) or self.edges.Add(edge)
             own.add(convert.ModifiedShape(edge), number)
         return TopoDS.Face(convert.ModifiedShape(part)), own
+
+
+def _is_own(face: Any) -> bool:
+    """True for a face on a plane, whose loops are exact in its parameters."""
+    from OCP.BRep import BRep_Tool
+    from OCP.Geom import Geom_Plane
+    from OCP.TopoDS import TopoDS
+
+    return isinstance(BRep_Tool.Surface_s(TopoDS.Face(face)), Geom_Plane)
 
 
 class _Renumbered:
@@ -511,9 +496,6 @@ class _Renumbered:
     def FindIndex(self, edge: Any) -> int:  # noqa: N802 (as OCCT's maps)
         index = self._shapes.FindIndex(edge)
         return self._numbers[index - 1] if index else 0
-
-    def FindKey(self, number: int) -> Any:  # noqa: N802
-        return self._shapes.FindKey(self._numbers.index(number) + 1)
 
 
 def _shape_faces(
@@ -560,19 +542,18 @@ def _shape_faces(
             faces.append(made)
     uses: dict[int, int] = {}
     for face in faces:
-        for number, _, _ in (side for cycle in face.loops for side in cycle):
-            uses[number] = uses.get(number, 0) + 1
+        for side in face.sides:
+            uses[side.edge] = uses.get(side.edge, 0) + 1
     for face in faces:
         # Whole surfaces have no sides that are parts of their edges.
-        sides = [side for cycle in face.loops for side in cycle]
-        if any(uses[n] > 1 and border(t) and not is_whole(t) for n, _, t in sides):
+        if any(uses[s.edge] > 1 and border(s.trace) and not is_whole(s.trace) for s in face.sides):
             face.natural = False
     return faces, converted.edges.Extent(), remarks
 
 
 def _own_seam(face: ImportedFace) -> bool:
     """True if a face meets itself along an edge."""
-    numbers = [n for cycle in face.loops for n, _, _ in cycle]
+    numbers = [side.edge for side in face.sides]
     return len({*numbers}) < len(numbers)
 
 
@@ -688,13 +669,15 @@ def _space_curve(edge: Any) -> Nurbs | None:
 def _face(face: Any, edges: Any, name: str) -> ImportedFace:
     from OCP.BRep import BRep_Tool
     from OCP.BRepTools import BRepTools
-    from OCP.Geom import Geom_BSplineSurface
+    from OCP.Geom import Geom_BSplineSurface, Geom_Plane, Geom_RectangularTrimmedSurface
     from OCP.GeomConvert import GeomConvert
     from OCP.TopAbs import TopAbs_WIRE
     from OCP.TopoDS import TopoDS
 
     surface = BRep_Tool.Surface_s(face)
     if not isinstance(surface, Geom_BSplineSurface):
+        if isinstance(surface, Geom_Plane):
+            surface = Geom_RectangularTrimmedSurface(surface, *BRepTools.UVBounds_s(face))
         surface = GeomConvert.SurfaceToBSplineSurface_s(surface)
     surface = surface.Copy()
     if surface.IsUPeriodic():
@@ -718,19 +701,18 @@ def _face(face: Any, edges: Any, name: str) -> ImportedFace:
     wires.sort(key=lambda w: not w.IsSame(outer))
     frame = np.array([u0, v0, 0.0]), np.array([u1 - u0, v1 - v0, 1.0])
     loops = [_cycle(TopoDS.Wire(wire), face, edges, frame) for wire in wires]
-    traces = [trace for cycle in loops for _, _, trace in cycle]
-    natural = bool(traces) and all(border(trace) for trace in traces)
-    if traces and not natural:
-        held = [[(n, b, _on_border(n, t, made, edges)) for n, b, t in cycle] for cycle in loops]
-        moved = [[(n, b, t) for n, b, t in cycle if t is not None] for cycle in held]
-        natural = sum(map(len, moved)) == len(traces)
-        loops = moved if natural else loops
+    sides = [side for cycle in loops for side in cycle]
+    natural = bool(sides) and all(border(side.trace) for side in sides)
+    if sides and not natural:
+        paths = [(side.trace._data(), side.tolerance) for side in sides]
+        moved = _core.on_border(made._data(), paths)
+        found = iter([path for path in moved if path is not None])
+        if natural := None not in moved:
+            loops = [[s._replace(trace=Nurbs._of(next(found))) for s in own] for own in loops]
     return ImportedFace(name, made, loops, natural, False)
 
 
-def _cycle(
-    wire: Any, face: Any, edges: Any, frame: tuple[Floats, Floats]
-) -> list[tuple[int, bool, Nurbs]]:
+def _cycle(wire: Any, face: Any, edges: Any, frame: tuple[Floats, Floats]) -> list[ImportedSide]:
     """The sides of a loop, in its order."""
     from OCP.BRep import BRep_Tool
     from OCP.BRepTools import BRepTools_WireExplorer
@@ -767,81 +749,23 @@ def _cycle(
         # Some programs leave an edge of no length where they cut a closed face.
         if np.ptp(trace.points, axis=0).max() < _NOTHING:
             continue
-        cycle.append((edges.FindIndex(edge), edge.Orientation() == TopAbs_REVERSED, trace))
+        backwards = edge.Orientation() == TopAbs_REVERSED
+        near = BRep_Tool.Tolerance_s(edge)
+        cycle.append(ImportedSide(edges.FindIndex(edge), backwards, trace, near))
     return cycle if ordered else _chained(cycle)
 
 
-def _chained(sides: list[tuple[int, bool, Nurbs]]) -> list[tuple[int, bool, Nurbs]]:
+def _chained(sides: list[ImportedSide]) -> list[ImportedSide]:
     """Sides in the order in which they follow each other in the parameters."""
     left = list(sides)
     chain = left[:1]
     del left[:1]
     while left:
-        _, back, trace = chain[-1]
+        _, back, trace, _ = chain[-1]
         end = trace.points[0 if back else -1]
-        away = [float(np.linalg.norm(t.points[-1 if b else 0] - end)) for _, b, t in left]
+        away = [float(np.linalg.norm(t.points[-1 if b else 0] - end)) for _, b, t, _ in left]
         chain.append(left.pop(int(np.argmin(away))))
     return chain
-
-
-def _on_border(number: int, trace: Nurbs, surface: Nurbs, edges: Any) -> Nurbs | None:
-    """A side as an edge of the parameter square, if it is the same curve in space, else None.
-
-    Towards a pole one parameter has ever less effect, and programs write it with any error there.
-    """
-    from OCP.BRep import BRep_Tool
-    from OCP.TopoDS import TopoDS
-
-    if border(trace):
-        return trace
-    near = BRep_Tool.Tolerance_s(TopoDS.Edge(edges.FindKey(number)))
-    spans = itertools.pairwise(np.unique(trace.knots[0]))
-    t = np.concatenate([np.linspace(a, b, _PLACES) for a, b in spans])
-    u, v, _ = np.clip(trace(t), 0, 1).T
-    places = surface(u, v)
-    for k, end in itertools.product((0, 1), (0.0, 1.0)):
-        edge = np.full(len(t), end)
-        moved = surface(edge, v) if k == 0 else surface(u, edge)
-        if np.linalg.norm(moved - places, axis=1).max() <= near:
-            points = trace.points.copy()
-            points[:, k] = end
-            # Ends at a corner but for the same tolerance are there.
-            for last in (0, -1):
-                corner = points[last].copy()
-                corner[1 - k] = round(corner[1 - k])
-                here, there = (
-                    surface(*np.clip(p[:2, None], 0, 1))[0] for p in (points[last], corner)
-                )
-                if np.linalg.norm(here - there) <= near:
-                    points[last] = corner
-            return Nurbs(trace.degrees, trace.knots, points, trace.weights)
-    return None
-
-
-def border(trace: Nurbs) -> str:
-    """The edge of the parameter square along which a curve runs, such as ``u0``; may be empty.
-
-    Parameters
-    ----------
-    trace
-        The curve, in (u, v, 0).
-    """
-    for k, letter in enumerate("uv"):
-        for end in (0, 1):
-            if np.abs(trace.points[:, k] - end).max() < 1e-9:
-                return f"{letter}{end}"
-    return ""
-
-
-def is_whole(trace: Nurbs) -> bool:
-    """True if a curve along an edge of the parameter square covers the whole edge.
-
-    Parameters
-    ----------
-    trace
-        The curve, in (u, v, 0).
-    """
-    return bool(abs(np.ptp(trace.points[[0, -1]], axis=0).max() - 1) < 1e-9)
 
 
 def _surface(surface: Any) -> Nurbs:

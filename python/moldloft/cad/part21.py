@@ -49,7 +49,7 @@ _TAKEN = {"LENGTH_UNIT": "millimetres are taken", "PLANE_ANGLE_UNIT": "radians a
 _PREFIXES = {"$": 1.0, ".MILLI.": 1e-3, ".CENTI.": 1e-2, ".DECI.": 0.1, ".MICRO.": 1e-6}
 _PREFIXES |= {".KILO.": 1e3, ".NANO.": 1e-9}
 
-_EXPONENT = re.compile(r"[-+]?\d+\.?\d*[Ee]\+?\d{2,}")
+_EXPONENT = re.compile(r"(?<![\d.])[-+]?\d++(?:\.\d*+)?[Ee]\+?\d{2,}")
 """Numbers that may exceed double precision."""
 _LARGEST = 1e50
 """Largest coordinate, as for models."""

@@ -256,7 +256,7 @@ def _from_standard_input(options: argparse.Namespace) -> Model:
 
 def _foreign(options: argparse.Namespace) -> Model | None:
     """The model of a mesh or CAD file; None for other files."""
-    from moldloft.cad.importing import ENDINGS, program
+    from moldloft.cad.importing import ENDINGS, imported
     from moldloft.loading import loads
     from moldloft.mesh_files import holds_mesh, mesh_program
 
@@ -266,12 +266,13 @@ def _foreign(options: argparse.Namespace) -> Model | None:
         return None
     units = getattr(options, "units", None)
     if cad:
-        text, remarks = program(place, units=units or "m")
+        _, model, remarks = imported(place, units=units or "m")
     else:
         text, remarks = mesh_program(place)
+        model = loads(text, name=f"{place.stem}.sdl")
     for remark in remarks:
         print(f"warning: {options.model}: {remark}", file=sys.stderr)
-    return loads(text, name=f"{place.stem}.sdl")
+    return model
 
 
 def open_model(options: argparse.Namespace) -> Model:

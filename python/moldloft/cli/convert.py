@@ -108,11 +108,15 @@ def _from_cad(options: argparse.Namespace, target: Path | None, form: str) -> in
     from moldloft.files import Output, commit, produce
     from moldloft.loading import loads
 
+    model = None
     if options.model.lower().endswith((".dxf", ".svg")):
         from moldloft.overlays.reading import program
+
+        text, remarks = program(options.model, units=options.units)
     else:
-        from moldloft.cad.importing import program
-    text, remarks = program(options.model, units=options.units)
+        from moldloft.cad.importing import imported
+
+        text, model, remarks = imported(options.model, units=options.units)
     for remark in remarks:
         print(f"warning: {options.model}: {remark}", file=sys.stderr)
     if form == "sdl":
@@ -123,7 +127,8 @@ def _from_cad(options: argparse.Namespace, target: Path | None, form: str) -> in
         return 0
     if target is None:
         raise Error(f"name the {form} file with -o")
-    model = loads(text, name=f"{Path(options.model).stem}.sdl")
+    if model is None:
+        model = loads(text, name=f"{Path(options.model).stem}.sdl")
     model.partial = options.keep_going
     commit(target.parent, produce(model, form, target))
     return 0
