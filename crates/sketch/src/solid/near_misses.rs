@@ -191,7 +191,7 @@ impl<T: Real> Element<'_, T> {
         let flat = |p: Vec3| [p.distance(axis.foot(p)), axis.direction.dot(p - axis.point)];
         let corners = self.corners.iter().map(|p| flat(*p));
         let first = flat(self.corners[0]);
-        let far = |c: &[f64; 2]| (c[0] - first[0]).hypot(c[1] - first[1]);
+        let far = |c: &[f64; 2]| (c[0] - first[0]).powi(2) + (c[1] - first[1]).powi(2);
         let Some(last) = corners.max_by(|c, d| far(c).total_cmp(&far(d))) else { return 0.0 };
         let normal = [last[1] - first[1], first[0] - last[0]];
         let own = flat(p);
