@@ -23,10 +23,6 @@ SOAK = os.environ.get("MOLDLOFT_SOAK") == "1"
 #: OCCT's edges between round faces are splines within 1e-7.
 BOUND = 1e-7
 
-#: Refused with the location: contacts of curved faces along a whole circle, nearer than facets
-#: resolve, and bores that touch a bar's side from inside in one point.
-NEAR = {("ball", -1e-4), ("ball", 1e-4), ("groove", -1e-4), ("groove", 1e-4), ("breakout", 0.0)}
-
 
 @pytest.mark.parametrize("family", MACHINED)
 def test_machined_parts_are_those_of_occt(family: str) -> None:
@@ -66,10 +62,6 @@ def test_numbers_pass_through_tangency(family: str) -> None:
                 sketch.run("\n".join(f"SET TABLE.N{j} {new[j]!r}" for j in changed))
             values = new
             found = sketch.objects[part.name]
-            if found["volume"] is None:
-                said = [str(r) for r in sketch.run(f"CHECK {part.name}", strict=False)]
-                assert (family, t) in NEAR and "701" in said[0], (k, t, said)
-                continue
             volume, area = measures(part.solid)
             if family == "breakout":
                 volume = bored(Sizes(f"{family} {k}"), t)

@@ -7,8 +7,9 @@
 //! change either to first order.
 
 use super::SketchSolid;
-use super::facet_source::{FacetSource, moves, settled};
+use super::facet_source::{FacetSource, settled};
 use super::mass::Mass;
+use super::revolved::moves;
 use super::surface::{Carrier, FaceSurface, meet};
 use crate::solid::arrangement::SurfaceCoincidence;
 use moldloft_num::{Real, Vec3};

@@ -8,10 +8,11 @@
 
 use super::arrangement::{self, ArrangeError, Arrangement, Facet, INNER};
 use super::coincidence::{self, Kink, part, rates};
-use super::facet_source::{FacetSource, ON_SURFACE, along, moves, newell, settled};
+use super::facet_source::{FacetSource, ON_SURFACE, along, newell, settled};
 use super::joined_round::{joined_surface, seams, shared_surfaces};
 use super::near_misses::NearMissSearch;
 use super::nearness::Nearness;
+use super::revolved::{moves, patch_parameters};
 use super::surface::{FaceSurface, Jet};
 use super::tangent_ruling::{TangentRuling, rulings};
 use super::{FacetPart, SketchSolid, SolidEdge, SolidFace, Trim, Vertex};
@@ -847,11 +848,20 @@ pub(super) fn located<T: Real>(
     by: Vec3<T>,
     from: Option<[f64; 2]>,
 ) -> Option<[T; 3]> {
-    let start = from.unwrap_or_else(|| surface.parameters(p.re()));
-    // Beside a pole a search may pass it and stay on its other side.
-    let grid = (0..81).map(|k| [f64::from(k % 9) / 8.0, f64::from(k / 9) / 8.0]);
-    let mut starts = std::iter::once(start).chain(grid);
-    let at = starts.find_map(|start| settled(surface, p.re(), start, ON_SURFACE))?;
+    let at = match patch_parameters(surface, p.re(), from.unwrap_or([0.5; 2])) {
+        Some(at) => {
+            let [s, du, dv] = surface.jet(T::from(at[0]), T::from(at[1])).map(Vec3::re);
+            let on = s.distance(p.re()) <= ON_SURFACE * (du.norm() + dv.norm());
+            on.then_some(at)?
+        }
+        None => {
+            let start = from.unwrap_or_else(|| surface.parameters(p.re()));
+            // Beside a pole a search may pass it and stay on its other side.
+            let grid = (0..81).map(|k| [f64::from(k % 9) / 8.0, f64::from(k / 9) / 8.0]);
+            let mut starts = std::iter::once(start).chain(grid);
+            starts.find_map(|start| settled(surface, p.re(), start, ON_SURFACE))?
+        }
+    };
     let lifted = at.map(T::from);
     let step = |[_, du, dv]: Jet<T>, r: Vec3<T>| {
         let (a, b, c) = (du.norm_sq(), du.dot(dv), dv.norm_sq());

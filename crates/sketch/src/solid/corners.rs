@@ -2,8 +2,9 @@
 
 use super::coincidence::{Kink, StrayPart, Tangent, part, rates};
 use super::combine::{CombineError, Kind, Placing, triangles_of};
-use super::facet_source::{ON_SURFACE, along, moves};
+use super::facet_source::{ON_SURFACE, along};
 use super::meeting::EqualCylinders;
+use super::revolved::moves;
 use super::surface::{Carrier, FaceSurface, meet};
 use moldloft_num::{Real, Vec3};
 use std::collections::BTreeSet;

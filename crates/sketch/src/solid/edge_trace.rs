@@ -5,6 +5,7 @@ use super::combine::{CombineError, Kind, Placing, located};
 use super::curve::SmoothPiece;
 use super::facet_source::along;
 use super::meeting::{EqualCylinders, closed_form};
+use super::revolved::RevolvedSurface;
 use super::surface::{Carrier, FaceSurface, Met, meet};
 use moldloft_num::GAUSS_8_UNIT;
 use moldloft_num::{Real, Vec3};
@@ -244,7 +245,8 @@ impl<T: Real> Placing<'_, T> {
                     let own = fixed.iter().position(
                         |o| matches!(o, Carrier::Surface(s) if std::ptr::eq::<FaceSurface<T>>(*s, surface)),
                     );
-                    let place = match own {
+                    let searched = own.filter(|_| RevolvedSurface::of(surface).is_none());
+                    let place = match searched {
                         Some(k) => {
                             let [u, v] = met.parameters[k];
                             [u, v, met.moved_parameters[k][0] * (rate * w)]

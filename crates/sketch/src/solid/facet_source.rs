@@ -2,24 +2,13 @@
 
 use super::coincidence::Kink;
 use super::curve::SmoothPiece;
+use super::revolved::{arc_share, is_circle};
 use super::surface::FaceSurface;
 use moldloft_num::{Real, Vec3};
 use std::sync::Arc;
 
 /// Distance from a surface, relative to its size, within which a point is on it.
 pub(super) const ON_SURFACE: f64 = 1e-8;
-
-/// Speed relative to a face, compared with the speeds around, from which faces separate in a
-/// corner.
-const PARTING: f64 = 1e-6;
-
-/// Speed by rounding: parameters are lengths and degrees, so that speeds of motion are about one.
-const STILL: f64 = 1e-11;
-
-/// True if a speed is above rounding, relative to the speeds around it.
-pub(super) fn moves(speed: f64, around: f64) -> bool {
-    speed.abs() > PARTING * around + STILL
-}
 
 /// Origin of the facets of bodies.
 pub(super) struct FacetSource<T> {
@@ -43,6 +32,13 @@ pub(super) struct FacetSource<T> {
 
 /// The parameter of the point of a piece nearest to `p`.
 pub(super) fn along<T: Real>(piece: &SmoothPiece<T>, p: Vec3) -> f64 {
+    if let SmoothPiece::Conic { centre, a, b, sweep } = piece
+        && is_circle(a.re(), b.re())
+    {
+        let by = p - centre.re();
+        return arc_share(libm::atan2(by.dot(b.re()), by.dot(a.re())), sweep.re(), 0.5)
+            .clamp(-0.1, 1.1);
+    }
     let at = |s: f64| piece.at(T::from(s)).re();
     let mut s = (0..=16)
         .map(|k| f64::from(k) / 16.0)

@@ -3,8 +3,8 @@
 use super::arrangement::{ArrangedFace, SurfaceSide};
 use super::coincidence::Kink;
 use super::curve::SmoothPiece;
-use super::facet_source::{FacetSource, moves};
-use super::meeting::{Meridian, RevolvedSurface};
+use super::facet_source::FacetSource;
+use super::revolved::{Meridian, RevolvedSurface, moves};
 use super::surface::FaceSurface;
 use moldloft_num::{Axis, Real, Vec3};
 use std::collections::{BTreeMap, BTreeSet};

@@ -7,13 +7,11 @@
 //! into another curve has no closed form here.
 
 use super::curve::SmoothPiece;
-use super::facet_source::{along, moves};
+use super::facet_source::along;
+use super::revolved::{all_vanish, round, straight_axis, vanishes};
 use super::surface::FaceSurface;
 use moldloft_num::{Axis, Real, Vec3};
 use std::f64::consts::PI;
-
-/// Tolerance of equal positions, relative to the sizes around them.
-const ALIKE: f64 = 1e-11;
 
 /// The lines about which a surface may be turned without a change.
 enum SymmetryAxis<T> {
@@ -28,102 +26,6 @@ enum SymmetryAxis<T> {
 pub(super) struct RoundCylinder<T> {
     pub(super) axis: Axis<T>,
     pub(super) radius: T,
-}
-
-/// A cylinder, cone, sphere or torus.
-pub(super) struct RevolvedSurface<T> {
-    /// Its axis, through the centre of a sphere or torus.
-    pub(super) axis: Axis<T>,
-    pub(super) meridian: Meridian<T>,
-}
-
-/// The curve that is turned about the axis.
-#[derive(Clone, Copy)]
-pub(super) enum Meridian<T> {
-    /// The radius at the point of the axis, and its change along the axis.
-    Line { radius: T, slope: T },
-    /// The distance of a circle's centre from the axis, and its radius.
-    Circle { big: T, small: T },
-}
-
-impl<T: Real> Meridian<T> {
-    pub(super) fn re(&self) -> Meridian<f64> {
-        match self {
-            Meridian::Line { radius, slope } => {
-                Meridian::Line { radius: radius.re(), slope: slope.re() }
-            }
-            Meridian::Circle { big, small } => {
-                Meridian::Circle { big: big.re(), small: small.re() }
-            }
-        }
-    }
-}
-
-impl<T: Real> RevolvedSurface<T> {
-    pub(super) fn of(surface: &FaceSurface<T>) -> Option<RevolvedSurface<T>> {
-        match surface {
-            FaceSurface::Plane { .. } => None,
-            FaceSurface::Ruled { near, far } => {
-                let axis = straight_axis(near, far)?;
-                let &SmoothPiece::Conic { centre, a, .. } = near else { return None };
-                let radius = a.norm();
-                let (end, other) = match *far {
-                    SmoothPiece::Conic { centre, a: p, .. } => (centre, p.dot(a) / radius),
-                    SmoothPiece::Cubic([p, ..]) => (p, T::zero()),
-                };
-                let height = axis.direction.dot(end - centre);
-                // A plane ring, or two nappes.
-                if height.re().abs() <= ALIKE * radius.re() || other.re() < 0.0 {
-                    return None;
-                }
-                let slope = (other - radius) / height;
-                Some(RevolvedSurface { axis, meridian: Meridian::Line { radius, slope } })
-            }
-            FaceSurface::Turned { centre, axis, profile, .. } => {
-                let SmoothPiece::Conic { centre: c, a, b, .. } = *profile else { return None };
-                let normal = a.cross(b).normalized()?;
-                let own = Axis { point: *centre, direction: *axis };
-                let (small, foot) = (a.norm(), own.foot(c));
-                let size = small.re() + (c - foot).re().norm();
-                let upright = vanishes(normal.dot(*axis), 1.0)
-                    && vanishes(normal.dot(c - foot), size)
-                    && round(a, b);
-                let central = all_vanish(c - foot, small.re());
-                let big = if central { T::zero() } else { (c - foot).norm() };
-                let own = Axis { point: if central { c } else { foot }, direction: *axis };
-                let meridian = Meridian::Circle { big, small };
-                upright.then_some(RevolvedSurface { axis: own, meridian })
-            }
-        }
-    }
-
-    /// The direction from the axis, or from the centre of the section by a plane through it, to a point.
-    pub(super) fn away(&self, p: Vec3) -> Vec3 {
-        let (at, d) = (self.axis.point.re(), self.axis.direction.re());
-        let by = p - at;
-        let flat = by - d * d.dot(by);
-        match self.meridian.re() {
-            Meridian::Line { .. } => flat,
-            Meridian::Circle { big, .. } => {
-                by - flat.normalized().map_or(Vec3::zero(), |out| out * big)
-            }
-        }
-    }
-}
-
-/// True if a length is zero relative to a size, with its derivatives.
-fn vanishes<T: Real>(x: T, size: f64) -> bool {
-    x.re().abs() <= ALIKE * size && (1..T::PARTS).all(|k| !moves(x.part(k), 1.0))
-}
-
-fn all_vanish<T: Real>(v: Vec3<T>, size: f64) -> bool {
-    v.to_array().into_iter().all(|x| vanishes(x, size))
-}
-
-/// True if a curve from `a` to its conjugate `b` is a circle.
-fn round<T: Real>(a: Vec3<T>, b: Vec3<T>) -> bool {
-    let size = a.norm();
-    size.re() > 0.0 && vanishes(size - b.norm(), size.re()) && vanishes(a.dot(b) / size, size.re())
 }
 
 /// The displacement from the first curve of a ruled surface to its second one, if it is a
@@ -150,28 +52,6 @@ pub(super) fn round_cylinder<T: Real>(surface: &FaceSurface<T>) -> Option<RoundC
     let upright = [a, b].iter().all(|r| vanishes(r.dot(way) / length, radius.re()));
     (round(a, b) && upright)
         .then_some(RoundCylinder { axis: Axis { point: centre, direction }, radius })
-}
-
-/// The axis of a cone or cylinder between circles.
-fn straight_axis<T: Real>(near: &SmoothPiece<T>, far: &SmoothPiece<T>) -> Option<Axis<T>> {
-    let SmoothPiece::Conic { centre, a, b, sweep } = *near else { return None };
-    let size = a.re().norm();
-    let direction = a.cross(b).normalized()?;
-    let other = match *far {
-        SmoothPiece::Conic { centre: c, a: p, b: q, sweep: s } => {
-            let long = p.re().norm();
-            let turned = all_vanish(a.cross(p) / T::from(size), long)
-                && all_vanish(b.cross(q) / T::from(size), long);
-            (turned && round(p, q) && vanishes(sweep - s, 1.0)).then_some(c)?
-        }
-        SmoothPiece::Cubic([p, q, r, e]) => {
-            let point = [q, r, e].into_iter().all(|x| all_vanish(x - p, size));
-            point.then_some(p)?
-        }
-    };
-    let across = (other - centre).cross(direction);
-    let reach = size + (other - centre).re().norm();
-    (round(a, b) && all_vanish(across, reach)).then_some(Axis { point: centre, direction })
 }
 
 fn symmetry_axis<T: Real>(surface: &FaceSurface<T>) -> Option<SymmetryAxis<T>> {

@@ -11,6 +11,7 @@ mod blend;
 mod blend_order;
 mod blend_tool;
 pub(crate) mod body_tree;
+mod border_places;
 pub(crate) mod coincidence;
 pub mod combine;
 mod corners;
@@ -40,6 +41,7 @@ mod outline_offset;
 mod outline_pieces;
 mod outline_sides;
 pub mod place;
+mod revolved;
 pub(crate) mod ruled_faces;
 pub mod shapes;
 pub mod surface;
@@ -895,59 +897,17 @@ impl<T: Real> SketchSolid<T> {
     }
 
     /// Start and end of a directed edge.
-    fn ends(&self, (e, forward): (usize, bool)) -> [Vec3<T>; 2] {
+    pub(super) fn ends(&self, (e, forward): (usize, bool)) -> [Vec3<T>; 2] {
         let edge = &self.edges[e];
         let [p, q] = edge.own_ends.unwrap_or_else(|| edge.ends.map(|v| self.vertices[v].at));
         if forward { [p, q] } else { [q, p] }
     }
 
     /// True if the end of an edge and the start of the next one separate.
-    fn parts(&self, edge: (usize, bool), next: (usize, bool)) -> bool {
+    pub(super) fn parts(&self, edge: (usize, bool), next: (usize, bool)) -> bool {
         let own = |h: (usize, bool)| self.edges[h.0].own_ends.is_some();
         let way = || (self.ends(next)[0] - self.ends(edge)[1]).to_array();
         (own(edge) || own(next)) && way().iter().any(|x| !x.is_constant())
-    }
-
-    /// Gauss nodes of a cycle of a round face, and the segments between edges whose ends separate.
-    pub(crate) fn cycle_places(
-        &self,
-        face: usize,
-        surface: &FaceSurface<T>,
-        cycle: &[(usize, bool)],
-    ) -> Vec<[T; 3]> {
-        let mut nodes = Vec::new();
-        for (k, &edge) in cycle.iter().enumerate() {
-            nodes.extend(self.places(face, edge));
-            let next = cycle[(k + 1) % cycle.len()];
-            if self.parts(edge, next) {
-                let (from, to) = (self.ends(edge)[1], self.ends(next)[0]);
-                let place = combine::located(surface, from, to - from, None);
-                nodes.extend(place.filter(|p| !p[2].is_constant()));
-            }
-        }
-        nodes
-    }
-
-    /// Gauss's nodes of an edge on the surface of a round face: u, v and the weighted change of u.
-    fn places(&self, face: usize, (e, forward): (usize, bool)) -> Vec<[T; 3]> {
-        let edge = &self.edges[e];
-        let sign = T::from(if forward { 1.0 } else { -1.0 });
-        if let Some(trace) = &edge.trace {
-            let own = trace.places.iter().find(|p| p.0 == face);
-            let turned = |p: &[T; 3]| [p[0], p[1], p[2] * sign];
-            return own.map(|p| p.1.iter().map(turned).collect()).unwrap_or_default();
-        }
-        let Some(surface) = self.surface(face) else { return vec![] };
-        let piece = self.piece((e, true));
-        let mut at = None;
-        let mut nodes = Vec::new();
-        for (s, w) in mass::along() {
-            let (p, by) = (piece.at(T::from(s)), piece.velocity(T::from(s)) * (sign * w));
-            let Some(place) = combine::located(&surface, p, by, at) else { continue };
-            at = Some([place[0].re(), place[1].re()]);
-            nodes.push(place);
-        }
-        nodes
     }
 
     pub(crate) fn surface(&self, face: usize) -> Option<FaceSurface<T>> {

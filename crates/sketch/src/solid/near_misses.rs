@@ -12,7 +12,7 @@
 use super::arrangement::{Facet, INNER, overlapping};
 use super::curve::SmoothPiece;
 use super::facet_source::{FacetSource, along};
-use super::meeting::{Meridian, RevolvedSurface};
+use super::revolved::RevolvedSurface;
 use super::surface::FaceSurface;
 use moldloft_num::{Axis, Real, Vec3};
 use std::collections::{BTreeMap, BTreeSet, HashMap};
@@ -32,7 +32,7 @@ const SAFE: f64 = 2.0;
 const SAME: f64 = 1e-5;
 
 /// Distance, relative to the bodies, from which facets of coaxial elements are in the order of these.
-const ORDERED: f64 = 1e-6;
+const ORDERED: f64 = 1e-7;
 
 /// Tolerance of one axis, relative to the bodies, and of one direction from it.
 const ONE_AXIS: f64 = 1e-11;
@@ -93,7 +93,7 @@ impl<T: Real> Stratum<'_, T> {
         du.norm() <= POLE * dv.norm()
     }
 
-    /// The axis of a circle, cylinder or cone.
+    /// The axis of a circle or surface of revolution about which its facets are divided.
     fn axis(&self) -> Option<Axis<f64>> {
         match self {
             Stratum::Edge(SmoothPiece::Conic { centre, a, b, .. }) => {
@@ -104,10 +104,8 @@ impl<T: Real> Stratum<'_, T> {
                 round.then_some(Axis { point, direction })
             }
             Stratum::Face(surface) => {
-                let round = RevolvedSurface::of(surface)?;
-                let Axis { point, direction } = round.axis;
-                let straight = matches!(round.meridian, Meridian::Line { .. });
-                straight.then(|| Axis { point: point.re(), direction: direction.re() })
+                let Axis { point, direction } = RevolvedSurface::of(surface)?.axis;
+                Some(Axis { point: point.re(), direction: direction.re() })
             }
             _ => None,
         }
@@ -179,6 +177,30 @@ struct Element<'a, T> {
     rim: (u32, usize),
     traced: bool,
     loops: &'a [Vec<u32>],
+}
+
+impl<T: Real> Element<'_, T> {
+    /// How far a point of a face of revolution is from its facet along a direction, in the plane
+    /// through the axis.
+    fn bulge(&self, axis: &Axis<f64>, p: Vec3, way: Vec3) -> f64 {
+        if !matches!(self.stratum, Stratum::Face(_)) {
+            return 0.0;
+        }
+        let Some(out) = (p - axis.foot(p)).normalized() else { return 0.0 };
+        // Distance from the axis and height of each corner.
+        let flat = |p: Vec3| [p.distance(axis.foot(p)), axis.direction.dot(p - axis.point)];
+        let corners = self.corners.iter().map(|p| flat(*p));
+        let first = flat(self.corners[0]);
+        let far = |c: &[f64; 2]| (c[0] - first[0]).powi(2) + (c[1] - first[1]).powi(2);
+        let Some(last) = corners.max_by(|c, d| far(c).total_cmp(&far(d))) else { return 0.0 };
+        let normal = [last[1] - first[1], first[0] - last[0]];
+        let own = flat(p);
+        let (rise, rate) = (
+            normal[0] * (own[0] - first[0]) + normal[1] * (own[1] - first[1]),
+            normal[0] * out.dot(way) + normal[1] * axis.direction.dot(way),
+        );
+        if rate == 0.0 { f64::INFINITY } else { rise / rate }
+    }
 }
 
 impl<T: Real> NearMissSearch<'_, T> {
@@ -446,7 +468,7 @@ impl<T: Real> NearMissSearch<'_, T> {
         if gap <= same || gap > reach || !self.covers(a, p) || !self.covers(b, q) {
             return None;
         }
-        let ordered = gap > ORDERED * self.scale && self.keep_order(a, b);
+        let ordered = gap > ORDERED * self.scale && self.keep_order([a, b], [p, q]);
         if ordered || a.stratum.at_pole(&x[..n]) || b.stratum.at_pole(&x[n..]) {
             return None;
         }
@@ -454,14 +476,34 @@ impl<T: Real> NearMissSearch<'_, T> {
         (left <= 1e-6).then_some((p + q) * 0.5)
     }
 
-    /// True if two elements are of circles, cylinders or cones about one axis, and no corner of one is between those of
-    /// the other: at any angle the facets are then nearer to the axis than these by one factor.
-    fn keep_order(&self, a: &Element<'_, T>, b: &Element<'_, T>) -> bool {
-        let Some((axis, other)) = a.stratum.axis().zip(b.stratum.axis()) else { return false };
-        let turned = axis.direction.cross(other.direction).norm();
-        let apart = other.point.distance(axis.foot(other.point));
-        if turned > ONE_AXIS || apart > ONE_AXIS * self.scale {
+    /// True if two elements are about one axis, or one is a plane across it, and their facets are in
+    /// the order of the points of a common normal. No corner of one may be between those of the
+    /// other: at any angle the facets of both are then nearer to the axis by one factor, and their
+    /// order is that of chords in a plane through the axis.
+    fn keep_order(&self, [a, b]: [&Element<'_, T>; 2], [p, q]: [Vec3; 2]) -> bool {
+        let across = |e: &Element<'_, T>| match e.stratum {
+            Stratum::Plane { normal, .. } => Some(normal),
+            _ => None,
+        };
+        let axis = match (a.stratum.axis(), b.stratum.axis()) {
+            (Some(axis), Some(other)) => {
+                let turned = axis.direction.cross(other.direction).norm();
+                let apart = other.point.distance(axis.foot(other.point));
+                (turned <= ONE_AXIS && apart <= ONE_AXIS * self.scale).then_some(axis)
+            }
+            (Some(axis), None) | (None, Some(axis)) => {
+                let normal = across(a).or_else(|| across(b));
+                normal.filter(|n| axis.direction.cross(*n).norm() <= ONE_AXIS).map(|_| axis)
+            }
+            (None, None) => None,
+        };
+        let Some((axis, way)) = axis.zip((p - q).normalized()) else { return false };
+        let gap = (p - q).dot(way) - a.bulge(&axis, p, way) + b.bulge(&axis, q, way);
+        if gap <= ORDERED * self.scale {
             return false;
+        }
+        if across(a).or_else(|| across(b)).is_some() {
+            return true;
         }
         let ways = |e: &Element<'_, T>| -> Vec<Vec3> {
             let arms = e.corners.iter().map(|p| *p - axis.foot(*p));

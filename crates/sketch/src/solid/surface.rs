@@ -1,5 +1,6 @@
 //! Surfaces of faces, and points where surfaces and curves meet, with derivatives.
 
+use super::revolved::{RevolvedSurface, patch_parameters};
 use crate::solid::curve::SmoothPiece;
 use moldloft_num::GAUSS_8_UNIT;
 use moldloft_num::{Real, Vec3, solve_dense};
@@ -56,8 +57,12 @@ impl<T: Real> FaceSurface<T> {
         }
     }
 
-    /// The parameters near a point, by a grid and Gauss-Newton steps. For points on the surface.
+    /// The parameters of a point on the surface: of one of revolution in closed form, else by a
+    /// grid and Gauss-Newton steps.
     pub(crate) fn parameters(&self, p: Vec3) -> [f64; 2] {
+        if let Some(at) = patch_parameters(self, p, [0.5; 2]) {
+            return at;
+        }
         let mut best = (f64::INFINITY, [0.5; 2]);
         for i in 0..=8 {
             for j in 0..=8 {
@@ -84,15 +89,24 @@ impl<T: Real> FaceSurface<T> {
         at
     }
 
-    /// The end of v at which the surface degenerates to a point, 0 if there is none: start of
-    /// integrals along v.
-    fn pole(&self) -> f64 {
+    /// The ends of v at which the surface degenerates to a point.
+    fn poles(&self) -> [bool; 2] {
         let thin = |v: f64| {
             let size = |u: f64| self.jet(T::from(u), T::from(v))[1].re().norm();
             size(0.1) + size(0.6)
         };
-        let (near, middle, far) = (thin(0.0), thin(0.5), thin(1.0));
-        if far <= 1e-9 * middle && far < near { 1.0 } else { 0.0 }
+        let middle = thin(0.5);
+        [0.0, 1.0].map(|v| thin(v) <= 1e-9 * middle)
+    }
+
+    /// Start of integrals along v: at a pole if there is one.
+    fn start(&self) -> f64 {
+        if self.poles() == [false, true] { 1.0 } else { 0.0 }
+    }
+
+    /// The pole at which integrals along v end: its v and position.
+    pub(crate) fn far_pole(&self) -> Option<(f64, Vec3)> {
+        (self.poles() == [true, true]).then(|| (1.0, self.jet(T::from(0.5), T::one())[0].re()))
     }
 
     /// Calls `add` with points and vector areas so that their sums are the integrals over the part of
@@ -100,7 +114,7 @@ impl<T: Real> FaceSurface<T> {
     /// argument is the area of the element with its sign. By Green's
     /// theorem, with integrals along v by Gauss's rule.
     pub(crate) fn sweep(&self, nodes: &[[T; 3]], mut add: impl FnMut(Vec3<T>, Vec3<T>, T)) {
-        let start = T::from(self.pole());
+        let start = T::from(self.start());
         let parts = if matches!(self, FaceSurface::Ruled { .. }) { 1 } else { 3 };
         for &[u, v, du] in nodes {
             let length = v - start;
@@ -129,11 +143,42 @@ pub(crate) enum Carrier<'a, T> {
     Curve(&'a SmoothPiece<T>),
 }
 
+/// A carrier as equations of a point.
+enum CarrierForm<'a, T> {
+    Plane(Vec3<T>, Vec3<T>),
+    Level(RevolvedSurface<T>),
+    Patch(&'a FaceSurface<T>),
+    Curve(&'a SmoothPiece<T>),
+}
+
+impl<'a, T: Real> CarrierForm<'a, T> {
+    fn of(carrier: &Carrier<'a, T>) -> CarrierForm<'a, T> {
+        match *carrier {
+            Carrier::Curve(piece) => CarrierForm::Curve(piece),
+            Carrier::Surface(FaceSurface::Plane { at, normal }) => CarrierForm::Plane(*at, *normal),
+            Carrier::Surface(surface) => match RevolvedSurface::of(surface) {
+                Some(round) => CarrierForm::Level(round),
+                None => CarrierForm::Patch(surface),
+            },
+        }
+    }
+
+    /// Number of its parameters.
+    fn unknowns(&self) -> usize {
+        match self {
+            CarrierForm::Plane(..) | CarrierForm::Level(_) => 0,
+            CarrierForm::Curve(_) => 1,
+            CarrierForm::Patch(_) => 2,
+        }
+    }
+}
+
 /// A point with its parameters on its carriers.
 #[derive(Clone, Debug)]
 pub(crate) struct Met<T> {
     pub at: Vec3<T>,
-    /// For each constraint: u and v, or s and nothing.
+    /// For each constraint: u and v, or s and nothing; zeros for planes and surfaces of revolution,
+    /// which are equations.
     pub parameters: Vec<[T; 2]>,
     /// The derivatives of point and parameters for a unit motion of the constraints' last plane
     /// along its normal.
@@ -149,34 +194,38 @@ pub(crate) fn meet<T: Real>(
     start: &[[f64; 2]],
     scale: f64,
 ) -> Option<Met<T>> {
-    let unknowns = |o: &Carrier<'_, T>| match o {
-        Carrier::Surface(FaceSurface::Plane { .. }) => 0,
-        Carrier::Surface(_) => 2,
-        Carrier::Curve(_) => 1,
-    };
-    let n = 3 + on.iter().map(unknowns).sum::<usize>();
-    let rows: usize = on.iter().map(|o| if unknowns(o) == 0 { 1 } else { 3 }).sum();
+    let forms: Vec<CarrierForm<'_, T>> = on.iter().map(CarrierForm::of).collect();
+    let n = 3 + forms.iter().map(CarrierForm::unknowns).sum::<usize>();
+    let rows: usize = forms.iter().map(|o| if o.unknowns() == 0 { 1 } else { 3 }).sum();
     if n != rows {
         return None;
     }
     let mut x: Vec<f64> = guess.to_array().to_vec();
-    for (o, s) in on.iter().zip(start) {
-        x.extend_from_slice(&s[..unknowns(o)]);
+    for (o, s) in forms.iter().zip(start) {
+        x.extend_from_slice(&s[..o.unknowns()]);
     }
-    let system = |x: &[T]| -> (Vec<T>, Vec<T>) {
+    let system = |x: &[T]| -> Option<(Vec<T>, Vec<T>)> {
         let (mut matrix, mut right) = (vec![T::zero(); n * n], vec![T::zero(); n]);
         let p = Vec3::new(x[0], x[1], x[2]);
         let (mut row, mut column) = (0, 3);
-        for o in on {
+        for o in &forms {
             match o {
-                Carrier::Surface(FaceSurface::Plane { at, normal }) => {
+                CarrierForm::Plane(at, normal) => {
                     right[row] = normal.dot(p - *at);
                     for k in 0..3 {
                         matrix[row * n + k] = normal[k];
                     }
                     row += 1;
                 }
-                Carrier::Surface(surface) => {
+                CarrierForm::Level(round) => {
+                    let (level, gradient) = round.level(p)?;
+                    right[row] = level;
+                    for k in 0..3 {
+                        matrix[row * n + k] = gradient[k];
+                    }
+                    row += 1;
+                }
+                CarrierForm::Patch(surface) => {
                     let [s, du, dv] = surface.jet(x[column], x[column + 1]);
                     for k in 0..3 {
                         right[row] = p[k] - s[k];
@@ -187,7 +236,7 @@ pub(crate) fn meet<T: Real>(
                     }
                     column += 2;
                 }
-                Carrier::Curve(piece) => {
+                CarrierForm::Curve(piece) => {
                     let (s, ds) = (piece.at(x[column]), piece.velocity(x[column]));
                     for k in 0..3 {
                         right[row] = p[k] - s[k];
@@ -199,16 +248,16 @@ pub(crate) fn meet<T: Real>(
                 }
             }
         }
-        (matrix, right)
+        Some((matrix, right))
     };
-    let plain = |x: &[f64]| -> (Vec<f64>, Vec<f64>) {
+    let plain = |x: &[f64]| -> Option<(Vec<f64>, Vec<f64>)> {
         let lifted: Vec<T> = x.iter().map(|&a| T::from(a)).collect();
-        let (m, r) = system(&lifted);
-        (m.into_iter().map(Real::re).collect(), r.into_iter().map(Real::re).collect())
+        let (m, r) = system(&lifted)?;
+        Some((m.into_iter().map(Real::re).collect(), r.into_iter().map(Real::re).collect()))
     };
     let mut last = f64::INFINITY;
     for step in 0..30 {
-        let (mut matrix, mut right) = plain(&x);
+        let (mut matrix, mut right) = plain(&x)?;
         let size = right.iter().fold(0.0f64, |m, r| m.max(r.abs()));
         if !size.is_finite() {
             return None;
@@ -225,20 +274,20 @@ pub(crate) fn meet<T: Real>(
         return None;
     }
     let lifted: Vec<T> = x.iter().map(|&a| T::from(a)).collect();
-    let (mut matrix, mut right) = system(&lifted);
+    let (mut matrix, mut right) = system(&lifted)?;
     solve_dense(&mut matrix, &mut right).ok()?;
     let exact: Vec<T> = lifted.iter().zip(&right).map(|(a, d)| *a - *d).collect();
-    let (mut matrix, _) = system(&exact);
+    let (mut matrix, _) = system(&exact)?;
     let mut rate = vec![T::zero(); n];
-    if unknowns(on.last()?) == 0 {
+    if forms.last()?.unknowns() == 0 {
         rate[n - 1] = T::one();
         solve_dense(&mut matrix, &mut rate).ok()?;
     }
     let split = |x: &[T]| {
         let mut column = 3;
         let mut all = Vec::with_capacity(on.len());
-        for o in on {
-            let count = unknowns(o);
+        for o in &forms {
+            let count = o.unknowns();
             let at = |k: usize| if k < count { x[column + k] } else { T::zero() };
             all.push([at(0), at(1)]);
             column += count;

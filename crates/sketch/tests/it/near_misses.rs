@@ -196,3 +196,41 @@ fn holes_of_sections_at_a_hair() {
     println!("{} right, {} refused", tally.right, tally.refused);
     assert!(tally.right > 2 && tally.refused > 2);
 }
+
+/// Halves of a ball by planes beside its poles and through its equator are the ball.
+#[test]
+fn halves_of_a_ball() {
+    let mut random = Random::new(80);
+    for round in 0..rounds(6, 300) {
+        let r = 5.0 + 10.0 * random.unit();
+        // The poles are on z.
+        let (axis, off) = match round % 3 {
+            0 => (2, 0.0),
+            1 => (0, r * (0.2 * random.unit() - 0.1)),
+            _ => (2, 1.8 * r * (random.unit() - 0.5)),
+        };
+        let mut text = String::new();
+        for (name, low) in [("A", off), ("B", off - 60.0)] {
+            let mut at = [-30.0; 3];
+            at[axis] = low;
+            let [x, y, z] = at;
+            text += &format!(
+                "SKETCH {name} 2D XZ; RECTANGLE {r} {} AT 0 {}\nARC CORNER 2 1 3 RADIUS {r}\n\
+                 ARC CORNER 3 2 4 RADIUS {r}\nGENERATE FACES; REVOLVE {name} 4 360\n\
+                 SKETCH W{name} 2D XY; RECTANGLE 60 60; EXTRUDE W{name} 60\n\
+                 MOVE W{name} {x} {y} {z}\nCOMMON {name} W{name} INTO H{name}\n",
+                2.0 * r,
+                -r
+            );
+        }
+        let mut s = SketchSession::new();
+        for reply in s.run_text(&(text + "UNION HA HB INTO P")) {
+            assert!(!reply.is_error(), "{r} {axis} {off}: {}", reply.text);
+        }
+        let got = measured(&mut s, "P").unwrap_or_else(|| panic!("{r} {axis} {off}"));
+        let want = [4.0 / 3.0 * PI * r.powi(3), 4.0 * PI * r * r];
+        for k in 0..2 {
+            assert!((got[k] - want[k]).abs() <= 1e-11 * want[k], "{r} {axis} {off}: {got:?}");
+        }
+    }
+}
