@@ -137,19 +137,7 @@ pub fn meet(a: &SurfaceShape, b: &SurfaceShape, tolerance: f64, size: f64) -> Ve
             if parallel(axes.z, o.z) {
                 return parallel_cylinders([axes, o], [*radius, *r], tolerance);
             }
-            let normal = axes.z.cross(o.z).normalized().unwrap_or_default();
-            if !near(*radius, *r) || !near((o.origin - axes.origin).dot(normal), 0.0) {
-                return Vec::new();
-            }
-            let Some(centre) = on_planes(
-                [normal, normal.cross(axes.z), normal.cross(o.z)],
-                [axes.origin, axes.origin, o.origin],
-            ) else {
-                return Vec::new();
-            };
-            let planes = [axes.z - o.z, axes.z + o.z].map(|n| n.normalized());
-            let cut = |n: Vec3| plane_cylinder(centre, n, axes, *radius, tolerance, size);
-            planes.into_iter().flatten().flat_map(cut).collect()
+            crossed_cylinders([axes, o], [*radius, *r], tolerance, size)
         }
         (Cylinder { axes, radius }, Torus { axes: ring, major, minor }) => {
             // A straight pipe continued by a bent one.
@@ -174,28 +162,62 @@ pub fn meet(a: &SurfaceShape, b: &SurfaceShape, tolerance: f64, size: f64) -> Ve
         (Torus { axes, major, minor }, Torus { axes: o, major: r, minor: t })
             if near(*minor, *t) =>
         {
-            // Two bends: their rings touch where the line of both planes touches them.
-            let mut made = Vec::new();
-            let mut touch = |p: Vec3, direction: Vec3| {
-                let on = near(p.distance(axes.origin), *major) && near(p.distance(o.origin), *r);
-                if on {
-                    made.push(ExactCurve::circle(p, direction, *minor));
-                }
-            };
-            if parallel(axes.z, o.z) {
-                if let Some(d) = (o.origin - axes.origin).normalized() {
-                    touch(axes.origin + d * *major, axes.z.cross(d));
-                    touch(axes.origin - d * *major, axes.z.cross(d));
-                }
-            } else if let Some(d) = axes.z.cross(o.z).normalized()
-                && let Some(p) = on_planes([axes.z, o.z, d], [axes.origin, o.origin, axes.origin])
-            {
-                touch(p, d);
-            }
-            made
+            touching_tori([axes, o], [*major, *r], *minor, tolerance, size)
         }
         _ => Vec::new(),
     }
+}
+
+/// The ellipses of two equal cylinders whose axes meet.
+fn crossed_cylinders(
+    [axes, o]: [&SurfaceAxes; 2],
+    [radius, r]: [f64; 2],
+    tolerance: f64,
+    size: f64,
+) -> Vec<ExactCurve> {
+    let near = |u: f64, v: f64| (u - v).abs() <= tolerance;
+    let normal = axes.z.cross(o.z).normalized().unwrap_or_default();
+    if !near(radius, r) || !near((o.origin - axes.origin).dot(normal), 0.0) {
+        return Vec::new();
+    }
+    let Some(centre) = on_planes(
+        [normal, normal.cross(axes.z), normal.cross(o.z)],
+        [axes.origin, axes.origin, o.origin],
+    ) else {
+        return Vec::new();
+    };
+    let planes = [axes.z - o.z, axes.z + o.z].map(|n| n.normalized());
+    let cut = |n: Vec3| plane_cylinder(centre, n, axes, radius, tolerance, size);
+    planes.into_iter().flatten().flat_map(cut).collect()
+}
+
+/// The circles of two bends of a pipe: their rings touch where the line of both planes touches them.
+fn touching_tori(
+    [axes, o]: [&SurfaceAxes; 2],
+    [major, r]: [f64; 2],
+    minor: f64,
+    tolerance: f64,
+    size: f64,
+) -> Vec<ExactCurve> {
+    let near = |u: f64, v: f64| (u - v).abs() <= tolerance;
+    let mut made = Vec::new();
+    let mut touch = |p: Vec3, direction: Vec3| {
+        let on = near(p.distance(axes.origin), major) && near(p.distance(o.origin), r);
+        if on {
+            made.push(ExactCurve::circle(p, direction, minor));
+        }
+    };
+    if axes.z.cross(o.z).norm() * size <= tolerance {
+        if let Some(d) = (o.origin - axes.origin).normalized() {
+            touch(axes.origin + d * major, axes.z.cross(d));
+            touch(axes.origin - d * major, axes.z.cross(d));
+        }
+    } else if let Some(d) = axes.z.cross(o.z).normalized()
+        && let Some(p) = on_planes([axes.z, o.z, d], [axes.origin, o.origin, axes.origin])
+    {
+        touch(p, d);
+    }
+    made
 }
 
 /// The intersection of an image surface with a plane, as the image of that of the originals.

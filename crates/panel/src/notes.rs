@@ -206,43 +206,48 @@ impl PanelNote {
     }
 }
 
+/// Tells of a chain of patches whose ends have different divisions.
+fn tell_chain(
+    f: &mut std::fmt::Formatter,
+    chain: &[ChainStep],
+    [m, n]: [u32; 2],
+) -> std::fmt::Result {
+    let (Some(a), Some(b)) = (chain.first(), chain.last()) else { return Ok(()) };
+    write!(
+        f,
+        "`{}` has {m} divisions along {} and `{}` has {n} along {}, but panels run on \
+         from one to the other: ",
+        a.patch, a.along, b.patch, b.along
+    )?;
+    // The ends and the turns of a long chain suffice.
+    let tells = |k: usize| {
+        k < 6 || k + 6 >= chain.len() || (k < 60 && chain[k].along != chain[k - 1].along)
+    };
+    let mut quiet = 0;
+    for (k, step) in chain.iter().enumerate() {
+        if !tells(k) {
+            quiet += 1;
+            continue;
+        }
+        if quiet > 0 {
+            write!(f, "({quiet} more patches), ")?;
+            quiet = 0;
+        }
+        write!(f, "`{}` along {}", step.patch, step.along)?;
+        if k > 0 && step.along != chain[k - 1].along {
+            write!(f, " (the chain turns here)")?;
+        }
+        if k + 1 < chain.len() {
+            write!(f, ", joined by {} to ", step.shares)?;
+        }
+    }
+    Ok(())
+}
+
 impl std::fmt::Display for PanelNote {
     fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
         match self {
-            PanelNote::Divisions { chain, divisions: [m, n] } => {
-                let (Some(a), Some(b)) = (chain.first(), chain.last()) else { return Ok(()) };
-                write!(
-                    f,
-                    "`{}` has {m} divisions along {} and `{}` has {n} along {}, but panels run on \
-                     from one to the other: ",
-                    a.patch, a.along, b.patch, b.along
-                )?;
-                // The ends and the turns of a long chain suffice.
-                let tells = |k: usize| {
-                    k < 6
-                        || k + 6 >= chain.len()
-                        || (k < 60 && chain[k].along != chain[k - 1].along)
-                };
-                let mut quiet = 0;
-                for (k, step) in chain.iter().enumerate() {
-                    if !tells(k) {
-                        quiet += 1;
-                        continue;
-                    }
-                    if quiet > 0 {
-                        write!(f, "({quiet} more patches), ")?;
-                        quiet = 0;
-                    }
-                    write!(f, "`{}` along {}", step.patch, step.along)?;
-                    if k > 0 && step.along != chain[k - 1].along {
-                        write!(f, " (the chain turns here)")?;
-                    }
-                    if k + 1 < chain.len() {
-                        write!(f, ", joined by {} to ", step.shares)?;
-                    }
-                }
-                Ok(())
-            }
+            PanelNote::Divisions { chain, divisions } => tell_chain(f, chain, *divisions),
             PanelNote::Pieces { patch, along, divisions, pieces } => {
                 write!(
                     f,

@@ -229,17 +229,7 @@ impl Panelling {
         let zeros = zeros(&structure, &points, size.diagonal());
         set_zeros(&zeros, &mut points);
         let fixed = fixed(&structure, &points, &size);
-        let joined = match before.filter(|b| b.joined.fixed == fixed) {
-            Some(before)
-                if before.joined.turned == before.joined.orientation(&structure, &points) =>
-            {
-                before.joined.clone()
-            }
-            _ => {
-                let joined = JoinedPatches::new(&structure, &points, fixed);
-                Arc::new(joined.map_err(|e| CallError::new("too-many-panels", e.to_string()))?)
-            }
-        };
+        let joined = joined_after(before, &structure, &points, fixed)?;
         let mut remarks = made.remarks;
         remarks.extend(cut_off.into_iter().map(|(patch, uv)| {
             knuckle_note(&drafts[patch], structure.patches[patch].divisions, &points[patch], uv)
@@ -256,17 +246,7 @@ impl Panelling {
             let earlier = before.map(|b| (b.bodies.as_slice(), &unchanged as _));
             remarks.extend(triangle_bodies::sewn(&mut bodies, &known, &joined, earlier));
         }
-        let whole = before.filter(|b| {
-            let alike = b.bodies.len() == bodies.len()
-                && b.bodies.iter().zip(&bodies).all(|(a, b)| a.is_like(b));
-            alike && Arc::ptr_eq(&b.joined, &joined)
-        });
-        let topology = match whole {
-            Some(before) => before.topology.clone(),
-            None if bodies.is_empty() => joined.topology.clone(),
-            None => triangle_bodies::with_bodies(&joined.topology, &bodies)
-                .map_err(|e| CallError::new("too-many-panels", e.to_string()))?,
-        };
+        let topology = topology_after(before, &joined, &bodies)?;
         Ok(Self {
             structure,
             joined,
@@ -506,4 +486,41 @@ fn fixed(structure: &PanelTopology, points: &[Arc<Vec<Vec3>>], all: &Box3) -> Ve
         boundary.map(|k| points[patch][k].distance(points[original][k]) <= near).collect()
     };
     structure.patches.iter().enumerate().map(of_patch).collect()
+}
+
+/// The joined patches, those of before where nothing differs.
+fn joined_after(
+    before: Option<&Panelling>,
+    structure: &PanelTopology,
+    points: &[Arc<Vec<Vec3>>],
+    fixed: Vec<Vec<bool>>,
+) -> Result<Arc<JoinedPatches>, CallError> {
+    Ok(match before.filter(|b| b.joined.fixed == fixed) {
+        Some(before) if before.joined.turned == before.joined.orientation(structure, points) => {
+            before.joined.clone()
+        }
+        _ => {
+            let joined = JoinedPatches::new(structure, points, fixed);
+            Arc::new(joined.map_err(|e| CallError::new("too-many-panels", e.to_string()))?)
+        }
+    })
+}
+
+/// The connectivity of patches and bodies, that of before where nothing differs.
+fn topology_after(
+    before: Option<&Panelling>,
+    joined: &Arc<JoinedPatches>,
+    bodies: &[MeshedBody],
+) -> Result<Arc<Topology>, CallError> {
+    let whole = before.filter(|b| {
+        let alike = b.bodies.len() == bodies.len()
+            && b.bodies.iter().zip(bodies).all(|(a, b)| a.is_like(b));
+        alike && Arc::ptr_eq(&b.joined, joined)
+    });
+    Ok(match whole {
+        Some(before) => before.topology.clone(),
+        None if bodies.is_empty() => joined.topology.clone(),
+        None => triangle_bodies::with_bodies(&joined.topology, bodies)
+            .map_err(|e| CallError::new("too-many-panels", e.to_string()))?,
+    })
 }

@@ -2,7 +2,7 @@
 
 use crate::curve::data::{Data, DataFit, DataOptions, fair_data};
 use crate::curve::demand::Demand;
-use crate::curve::moving::{MapReal, MovingRows, MovingSpace};
+use crate::curve::moving::{MovingRows, MovingSites, MovingSpace};
 use crate::optimum::Bend;
 use crate::optimum::goal::{GoalVariation, check_single, check_unique, moved};
 use crate::{FairError, InterpolationSpace, Measure};
@@ -73,26 +73,10 @@ pub(super) fn fair_data_under<T: Real>(
     options: &DataOptions,
     numbers: DataNumbers<'_, T>,
 ) -> Result<(MovingFit<T>, DataFit), FairError> {
-    let DataNumbers { points, tolerances, at, demands } = numbers;
     let still = numbers.are_constant();
-    let joins = demands.iter().all(|(_, demand)| matches!(demand, Demand::Join(_)));
-    let known = options.conditions.is_empty() || (joins && !demands.is_empty());
-    if !options.shape.is_empty() || !known || !options.bends {
+    if let Some(why) = without_derivatives(data, options, numbers.demands) {
         if !still {
-            return Err(FairError::NoDerivative(
-                "no derivatives are available for curves with conditions on shape, points or \
-                inflections: remove the conditions",
-            ));
-        }
-        let made = fair_data(data, options)?;
-        return Ok((MovingFit::still(&data.layout, &made), made));
-    }
-    if !data.layout.interpolates() {
-        if !still {
-            return Err(FairError::NoDerivative(
-                "no derivatives are available for curves with fewer knots than points: name a \
-                spacing",
-            ));
+            return Err(FairError::NoDerivative(why));
         }
         let made = fair_data(data, options)?;
         return Ok((MovingFit::still(&data.layout, &made), made));
@@ -100,31 +84,21 @@ pub(super) fn fair_data_under<T: Real>(
     let job = data.job()?;
     let mut parts = data.parts(options, &job)?;
     let found = data.found(options, &job, &mut parts)?;
-    let (share, weight) = (found.share, found.weight);
     let layout = &data.layout;
-    let (sites, knots) = layout.moving(at);
+    let (at, knots) = layout.moving(numbers.at);
     if still {
         let points = found.optimum.points.iter().map(|&p| Vec3::lifted(p)).collect();
         return Ok((MovingFit { points, knots }, data.fit(found, &job)));
     }
     let space = MovingSpace { space: &layout.space, knots: &knots };
-    let values = MovingRows { rows: sites.iter().map(|&t| space.value(t)).collect() };
-    let wanted = layout.moving_data(points, at, &sites);
-    // Change of the control points for which the curve of `of` follows the data at the sites while
-    // knots and sites move.
-    let through = |of: &[Vec3<f64>], real: &[Vec3<f64>]| -> Result<Vec<Vec3<T>>, FairError> {
-        let lifted: Vec<Vec3<T>> = of.iter().map(|&p| Vec3::lifted(p)).collect();
-        let change: Vec<Vec3<T>> = (0..wanted.len())
-            .map(|k| {
-                let off = wanted[k] - values.apply(k, &lifted);
-                off - Vec3::lifted(off.re())
-            })
-            .collect();
-        let change = layout.through(&change)?;
-        Ok(real.iter().zip(change).map(|(&p, c)| Vec3::lifted(p) + c).collect())
+    let sites = MovingSites {
+        values: MovingRows { rows: at.iter().map(|&t| space.value(t)).collect() },
+        wanted: layout.moving_data(numbers.points, numbers.at, &at),
     };
-    let start = through(&job.points, &job.points)?;
-    if share == 0.0 {
+    let through =
+        |of: &[Vec3<f64>]| sites.through(of, &job.points, |values| layout.through(values));
+    let start = through(&job.points)?;
+    if found.share == 0.0 {
         return Ok((MovingFit { points: start, knots }, data.fit(found, &job)));
     }
     if !knots.iter().all(|t| t.is_constant()) {
@@ -137,6 +111,7 @@ pub(super) fn fair_data_under<T: Real>(
         ));
     }
     // The optimum for the weight found, with the factors that derivatives need.
+    let weight = found.weight;
     let pull = data.pull(&parts);
     check_unique(&mut parts, &found, &pull)?;
     parts.pull = (weight > 0.0).then(|| pull.clone().scaled(weight.sqrt()));
@@ -150,8 +125,7 @@ pub(super) fn fair_data_under<T: Real>(
     }
     let control = &solved.optimum.points;
     let rows = space.measure(options.measure)?;
-    let mut forces: Vec<Vec3<T>> =
-        rows.slope(control).into_iter().map(|v| v - Vec3::lifted(v.re())).collect();
+    let mut forces = rows.forces(control);
     // Forces at the sites act through rows that move.
     let radii = layout.radii(&data.limit.radii);
     let held = |k: &usize| layout.rows.row(*k).0.iter().all(|&c| parts.frozen[c as usize]);
@@ -159,40 +133,18 @@ pub(super) fn fair_data_under<T: Real>(
         (0..radii.len()).filter(|k| radii[*k] > 0.0 && radii[*k].is_finite() && !held(k)).collect();
     let away: Vec<Vec3<f64>> = control.iter().zip(&job.points).map(|(p, q)| *p - *q).collect();
     let pulls = data.pulls();
-    let pulled = |k: &usize| layout.owner[*k].filter(|&i| pulls[i]).map(|i| tolerances[i]);
+    let pulled = |k: &usize| layout.owner[*k].filter(|&i| pulls[i]).map(|i| numbers.tolerances[i]);
     for (&k, force) in limited.iter().zip(&solved.forces()) {
         let mut force = *force;
         if pulled(&k).is_some() {
             force += layout.rows.apply(k, &away) * (weight / (radii[k] * radii[k]));
         }
-        for &(c, f) in &values.rows[k] {
-            let change = f - T::from(f.re());
-            forces[c] += force.map_real(|x| change * x);
-        }
+        sites.act(k, force, &mut forces);
     }
-    let owner = |k: &usize| layout.owner[*k].map(|i| tolerances[i]);
-    // A site that is no datum has the largest tolerance near it.
-    let largest = |k: usize| {
-        let near = layout.sources_of(k).map(|i| tolerances[i]);
-        near.reduce(|a, b| if b.re() > a.re() { b } else { a }).unwrap_or_else(T::zero)
-    };
-    let own: Vec<T> = (0..radii.len())
-        .filter(|&k| radii[k] > 0.0)
-        .map(|k| owner(&k).unwrap_or_else(|| largest(k)))
-        .collect();
-    let mut targets: Vec<T> = data.held().into_iter().flat_map(|c| start[c].to_array()).collect();
-    let mut bends: Vec<Bend<T>> = Vec::new();
-    for (place, demand) in demands {
-        let space = MovingSpace { space: &layout.space, knots: &knots };
-        for condition in demand.moving(space, &start, *place).transpose()?.into_iter().flatten() {
-            let change = |(c, f): (usize, Vec3<T>)| (c, f - Vec3::lifted(f.re()));
-            bends.push((targets.len(), condition.entries.into_iter().map(change).collect()));
-            targets.push(condition.value);
-        }
-    }
+    let (targets, bends) = moving_conditions(data, space, &start, numbers.demands)?;
     let moving = GoalVariation {
-        originals: through(control, &job.points)?,
-        tolerances: &own,
+        originals: through(control)?,
+        tolerances: &site_tolerances(layout, &radii, numbers.tolerances),
         pulled: limited.iter().filter_map(pulled).collect(),
         targets: &targets,
         forces,
@@ -203,4 +155,61 @@ pub(super) fn fair_data_under<T: Real>(
     };
     let points = moved(&parts, &solved, options.goal, &found, &pull, moving)?;
     Ok((MovingFit { points, knots }, data.fit(found, &job)))
+}
+
+/// The reason for which a curve has no derivatives.
+fn without_derivatives<T: Real>(
+    data: &Data,
+    options: &DataOptions,
+    demands: &[(f64, Demand<T>)],
+) -> Option<&'static str> {
+    let joins = demands.iter().all(|(_, demand)| matches!(demand, Demand::Join(_)));
+    let known = options.conditions.is_empty() || (joins && !demands.is_empty());
+    if !options.shape.is_empty() || !known || !options.bends {
+        Some(
+            "no derivatives are available for curves with conditions on shape, points or \
+            inflections: remove the conditions",
+        )
+    } else if !data.layout.interpolates() {
+        Some(
+            "no derivatives are available for curves with fewer knots than points: name a \
+            spacing",
+        )
+    } else {
+        None
+    }
+}
+
+/// Tolerances of the sites with limits: those of the data, and at other sites the largest near them.
+fn site_tolerances<T: Real>(
+    layout: &InterpolationSpace,
+    radii: &[f64],
+    tolerances: &[T],
+) -> Vec<T> {
+    let largest = |k: usize| {
+        let near = layout.sources_of(k).map(|i| tolerances[i]);
+        near.reduce(|a, b| if b.re() > a.re() { b } else { a }).unwrap_or_else(T::zero)
+    };
+    let own = |k: usize| layout.owner[k].map_or_else(|| largest(k), |i| tolerances[i]);
+    (0..radii.len()).filter(|&k| radii[k] > 0.0).map(own).collect()
+}
+
+/// Values of the conditions of held points and demands, and the changes of the demands' factors.
+fn moving_conditions<T: Real>(
+    data: &Data,
+    space: MovingSpace<'_, T>,
+    start: &[Vec3<T>],
+    demands: &[(f64, Demand<T>)],
+) -> Result<(Vec<T>, Vec<Bend<T>>), FairError> {
+    let mut targets: Vec<T> = data.held().into_iter().flat_map(|c| start[c].to_array()).collect();
+    let mut bends: Vec<Bend<T>> = Vec::new();
+    for (place, demand) in demands {
+        let space = MovingSpace { ..space };
+        for condition in demand.moving(space, start, *place).transpose()?.into_iter().flatten() {
+            let change = |(c, f): (usize, Vec3<T>)| (c, f - Vec3::lifted(f.re()));
+            bends.push((targets.len(), condition.entries.into_iter().map(change).collect()));
+            targets.push(condition.value);
+        }
+    }
+    Ok((targets, bends))
 }

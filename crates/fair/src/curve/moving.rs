@@ -33,6 +33,46 @@ impl<T: Real> MovingRows<T> {
         }
         out
     }
+
+    /// Changes of half the slope that come from the rows.
+    pub fn forces(&self, points: &[Vec3<f64>]) -> Vec<Vec3<T>> {
+        self.slope(points).into_iter().map(|f| f - Vec3::lifted(f.re())).collect()
+    }
+}
+
+/// Data at sites that move with knots and parameters.
+pub(crate) struct MovingSites<T> {
+    /// Values of control points at the sites.
+    pub values: MovingRows<T>,
+    pub wanted: Vec<Vec3<T>>,
+}
+
+impl<T: Real> MovingSites<T> {
+    /// The control points `real`, changed so that the values of `of` follow the data; `solve`
+    /// returns the control points that take given values.
+    pub fn through(
+        &self,
+        of: &[Vec3<f64>],
+        real: &[Vec3<f64>],
+        solve: impl Fn(&[Vec3<T>]) -> Result<Vec<Vec3<T>>, FairError>,
+    ) -> Result<Vec<Vec3<T>>, FairError> {
+        let lifted: Vec<Vec3<T>> = of.iter().map(|&p| Vec3::lifted(p)).collect();
+        let change = |(k, &wanted): (usize, &Vec3<T>)| {
+            let off = wanted - self.values.apply(k, &lifted);
+            off - Vec3::lifted(off.re())
+        };
+        let change: Vec<Vec3<T>> = self.wanted.iter().enumerate().map(change).collect();
+        let change = solve(&change)?;
+        Ok(real.iter().zip(change).map(|(&p, c)| Vec3::lifted(p) + c).collect())
+    }
+
+    /// Adds to `forces` the change of a force at site `k` that acts through a row that moves.
+    pub fn act(&self, k: usize, force: Vec3<f64>, forces: &mut [Vec3<T>]) {
+        for &(c, f) in &self.values.rows[k] {
+            let change = f - T::from(f.re());
+            forces[c] += force.map_real(|x| change * x);
+        }
+    }
 }
 
 /// Real vectors times numbers that carry derivatives.

@@ -336,48 +336,8 @@ impl ShapeConstraints {
     fn runs(&mut self, data: &mut Data, runs: &[Run]) -> Result<(), FairError> {
         let last = data.points.len() - 1;
         let breaks = data.layout.break_data();
-        for w in runs.windows(2) {
-            if w[1].1[0] < w[0].1[1] {
-                return Err(refused(w[1].0, format!("point {} is in two runs", w[1].1[0] + 1)));
-            }
-            let meet = w[0].1[1] == w[1].1[0] && !breaks.contains(&w[1].1[0]);
-            if meet && !w[0].2 && !w[1].2 {
-                let why = format!(
-                    "two straight runs meet at point {0}: add it to the breaks",
-                    w[1].1[0] + 1
-                );
-                return Err(refused(w[1].0, why));
-            }
-        }
-        for &(owner, [a, b], _, _) in runs {
-            let alone = |k: usize| !breaks.contains(&k) && k != 0 && k != last;
-            if (a == 1 && alone(1)) || (b + 1 == last && alone(b)) {
-                let why = "a run ends at an end of the data, or three points from it";
-                return Err(refused(owner, why));
-            }
-            let beside = |k: usize, other: usize| alone(k) && breaks.contains(&other);
-            if let Some(k) = [(a, a.wrapping_sub(1)), (b, b + 1)]
-                .into_iter()
-                .find_map(|(k, other)| beside(k, other).then_some(other))
-            {
-                let why =
-                    format!("a run ends at a break, or three points from it: point {}", k + 1);
-                return Err(refused(owner, why));
-            }
-        }
-        // Runs that touch an arc are found together with it.
-        let mut chains: Vec<Vec<Run>> = Vec::new();
-        for run in runs {
-            let joins = chains.last().and_then(|c| c.last()).is_some_and(|before| {
-                let near = run.1[0] - before.1[1];
-                let sharp = near == 0 && breaks.contains(&run.1[0]);
-                near <= 1 && !sharp && (before.2 || run.2)
-            });
-            match chains.last_mut() {
-                Some(c) if joins => c.push(*run),
-                _ => chains.push(vec![*run]),
-            }
-        }
+        check_runs(runs, &breaks, last)?;
+        let chains = chains_of(runs, &breaks);
         let plane = self.plane;
         let mut placed_at: Vec<Option<(Chain, Vec<f64>)>> = Vec::new();
         let mut at = data.layout.at.clone();
@@ -509,7 +469,7 @@ impl ShapeConstraints {
                 space.spans().filter(held).collect()
             };
             let n = points.len();
-            let mut rows: Vec<(f64, usize, Vec<f64>, P<f64>)> = Vec::new();
+            let mut rows: Vec<ArcRow> = Vec::new();
             let row = |t: f64, order: usize, span: isize| -> Vec<f64> {
                 let basis = space.basis(span, t);
                 let mut out = vec![0.0; n];
@@ -527,9 +487,9 @@ impl ShapeConstraints {
                     (_, k) => joints[k],
                 };
                 let (p, d) = chain.at(s);
-                rows.push((t, 0, row(t, 0, span), p));
+                rows.push((row(t, 0, span), p));
                 if tangent {
-                    rows.push((t, 1, row(t, 1, span), d.map(|c| c * rate)));
+                    rows.push((row(t, 1, span), d.map(|c| c * rate)));
                 }
             }
             if rows.len() > n {
@@ -537,7 +497,7 @@ impl ShapeConstraints {
             }
             // Between its ends the spline has approximately the second derivative of the arc, since
             // curvature defines an arc. Positions then agree to a higher order.
-            let mut near: Vec<(Vec<f64>, P<f64>)> = Vec::new();
+            let mut near: Vec<ArcRow> = Vec::new();
             for &span in &spans {
                 let (a, b) = (space.knot(span), space.knot(span + 1));
                 for (t, weight) in moldloft_num::gauss_points(a, b) {
@@ -548,33 +508,9 @@ impl ShapeConstraints {
                     near.push((own, [-d[1] * bend * root, d[0] * bend * root]));
                 }
             }
-            let m = rows.len();
-            let size: f64 = near.iter().flat_map(|r| &r.0).map(|x| x * x).sum();
-            let mut solved = [Vec::new(), Vec::new()];
-            for (axis, column) in solved.iter_mut().enumerate() {
-                let mut matrix = vec![0.0; (n + m) * (n + m)];
-                *column = vec![0.0; n + m];
-                for (own, wanted) in &near {
-                    for i in 0..n {
-                        column[i] += own[i] * wanted[axis] / size;
-                        for j in 0..n {
-                            matrix[i * (n + m) + j] += own[i] * own[j] / size;
-                        }
-                    }
-                }
-                for (r, row) in rows.iter().enumerate() {
-                    let largest = row.2.iter().fold(0.0f64, |a, x| a.max(x.abs()));
-                    column[n + r] = row.3[axis] / largest;
-                    for i in 0..n {
-                        matrix[i * (n + m) + n + r] = row.2[i] / largest;
-                        matrix[(n + r) * (n + m) + i] = row.2[i] / largest;
-                    }
-                }
-                moldloft_num::solve_dense(&mut matrix, column).map_err(|_| {
-                    refused(run.0, "the points of the arc determine no spline: more of them")
-                })?;
-                column.truncate(n);
-            }
+            let solved = constrained(n, &near, &rows).ok_or_else(|| {
+                refused(run.0, "the points of the arc determine no spline: more of them")
+            })?;
             let [x, y] = solved;
             let right: Vec<Vec3<f64>> =
                 x.into_iter().zip(y).map(|(x, y)| Vec3::of(x, y, 0.0)).collect();
@@ -641,6 +577,88 @@ impl ShapeConstraints {
         self.arcs.push(FoundArc { between: run.1, radius, centre: plane.up(centre), off });
         Ok(())
     }
+}
+
+/// Refuses runs that overlap, two straight ones that meet without a break, and ends of runs that
+/// leave too few points to breaks or the ends of the data.
+fn check_runs(runs: &[Run], breaks: &[usize], last: usize) -> Result<(), FairError> {
+    for w in runs.windows(2) {
+        if w[1].1[0] < w[0].1[1] {
+            return Err(refused(w[1].0, format!("point {} is in two runs", w[1].1[0] + 1)));
+        }
+        let meet = w[0].1[1] == w[1].1[0] && !breaks.contains(&w[1].1[0]);
+        if meet && !w[0].2 && !w[1].2 {
+            let why =
+                format!("two straight runs meet at point {0}: add it to the breaks", w[1].1[0] + 1);
+            return Err(refused(w[1].0, why));
+        }
+    }
+    for &(owner, [a, b], _, _) in runs {
+        let alone = |k: usize| !breaks.contains(&k) && k != 0 && k != last;
+        if (a == 1 && alone(1)) || (b + 1 == last && alone(b)) {
+            let why = "a run ends at an end of the data, or three points from it";
+            return Err(refused(owner, why));
+        }
+        let beside = |k: usize, other: usize| alone(k) && breaks.contains(&other);
+        if let Some(k) = [(a, a.wrapping_sub(1)), (b, b + 1)]
+            .into_iter()
+            .find_map(|(k, other)| beside(k, other).then_some(other))
+        {
+            let why = format!("a run ends at a break, or three points from it: point {}", k + 1);
+            return Err(refused(owner, why));
+        }
+    }
+    Ok(())
+}
+
+/// Runs that touch an arc are found together with it.
+fn chains_of(runs: &[Run], breaks: &[usize]) -> Vec<Vec<Run>> {
+    let mut chains: Vec<Vec<Run>> = Vec::new();
+    for run in runs {
+        let joins = chains.last().and_then(|c| c.last()).is_some_and(|before| {
+            let near = run.1[0] - before.1[1];
+            let sharp = near == 0 && breaks.contains(&run.1[0]);
+            near <= 1 && !sharp && (before.2 || run.2)
+        });
+        match chains.last_mut() {
+            Some(c) if joins => c.push(*run),
+            _ => chains.push(vec![*run]),
+        }
+    }
+    chains
+}
+
+/// A row of factors of control points, and the point that it takes.
+type ArcRow = (Vec<f64>, P<f64>);
+
+/// Coordinates of `n` control points that take the rows `exact`, and `near` in the mean of squares.
+fn constrained(n: usize, near: &[ArcRow], exact: &[ArcRow]) -> Option<[Vec<f64>; 2]> {
+    let m = exact.len();
+    let size: f64 = near.iter().flat_map(|r| &r.0).map(|x| x * x).sum();
+    let mut solved = [Vec::new(), Vec::new()];
+    for (axis, column) in solved.iter_mut().enumerate() {
+        let mut matrix = vec![0.0; (n + m) * (n + m)];
+        *column = vec![0.0; n + m];
+        for (own, wanted) in near {
+            for i in 0..n {
+                column[i] += own[i] * wanted[axis] / size;
+                for j in 0..n {
+                    matrix[i * (n + m) + j] += own[i] * own[j] / size;
+                }
+            }
+        }
+        for (r, row) in exact.iter().enumerate() {
+            let largest = row.0.iter().fold(0.0f64, |a, x| a.max(x.abs()));
+            column[n + r] = row.1[axis] / largest;
+            for i in 0..n {
+                matrix[i * (n + m) + n + r] = row.0[i] / largest;
+                matrix[(n + r) * (n + m) + i] = row.0[i] / largest;
+            }
+        }
+        moldloft_num::solve_dense(&mut matrix, column).ok()?;
+        column.truncate(n);
+    }
+    Some(solved)
 }
 
 /// The chain of a group of runs, and the feet of its data.

@@ -604,124 +604,126 @@ fn of_each(points: &[Vec3<f64>], closed: bool, what: impl Fn(Judged) -> f64) -> 
     out
 }
 
+/// Points on each side of a hinge.
+const HINGE_SIDE: usize = 4;
+
+/// A cubic through a point's neighbours that may turn at the point.
+struct Hinge {
+    index: usize,
+    size: f64,
+    scale: f64,
+    factor: f64,
+    angle: f64,
+    straight: bool,
+    /// Its turn over the largest beside it.
+    sharpness: f64,
+    /// True if the turns beside it grow towards it, as at a nose.
+    led: bool,
+    turn: f64,
+}
+
+impl Hinge {
+    /// `None`: coincident points.
+    fn at(index: usize, points: &[Vec3<f64>]) -> Option<Self> {
+        const HALF: usize = HINGE_SIDE;
+        let n = points.len();
+        let near: Vec<Vec3<f64>> =
+            (0..=2 * HALF).map(|k| points[(index + n + k - HALF) % n]).collect();
+        let mut chord = vec![0.0];
+        for w in near.windows(2) {
+            chord.push(chord.last()? + (w[1] - w[0]).norm());
+        }
+        let half = 0.5 * chord[2 * HALF];
+        let t: Vec<f64> = chord.iter().map(|c| (c - chord[HALF]) / half).collect();
+        let row = |x: f64| [1.0, x, x * x, x * x * x, x.max(0.0)];
+        let columns = ThinQr::new(t.iter().map(|&x| row(x)).collect())?;
+        let c = columns.solve(&near);
+        let smooth = [c[0], c[1], c[2], c[3]];
+        let square = |(q, &x): (&Vec3<f64>, &f64)| {
+            let [at, d, _] = cubic(&smooth, x);
+            let (at, d) = (at + c[4] * x.max(0.0), d + c[4] * if x > 0.0 { 1.0 } else { 0.0 });
+            let v = *q - at;
+            (v - d * (v.dot(d) / d.norm_sq().max(f64::MIN_POSITIVE))).norm_sq()
+        };
+        let squares: f64 = near.iter().zip(&t).map(square).sum();
+        let d = c[1] + c[4] * 0.5;
+        let speed = d.norm();
+        let normal = c[4] - d * (c[4].dot(d) / (speed * speed));
+        let turn = |k: usize| {
+            let (u, v) = (near[k] - near[k - 1], near[k + 1] - near[k]);
+            moldloft_num::Real::atan2(u.cross(v).norm(), u.dot(v))
+        };
+        let turns: Vec<f64> = (1..2 * HALF).map(turn).collect();
+        let own = turns[HALF - 1];
+        let others = || turns.iter().enumerate().filter(|(k, _)| *k != HALF - 1).map(|(_, t)| *t);
+        let beside = turns[HALF - 2].min(turns[HALF]);
+        let farther = turns[..HALF - 2].iter().chain(&turns[HALF + 1..]);
+        Some(Self {
+            index,
+            size: normal.norm(),
+            scale: (squares / 4.0).sqrt(),
+            factor: 1.0 / columns.r[4][4],
+            angle: moldloft_num::Real::atan2(normal.norm(), speed),
+            straight: others().all(|t| t < 0.02),
+            sharpness: own / others().fold(f64::MIN_POSITIVE, f64::max),
+            led: beside > 0.02 && beside > 1.3 * farther.fold(0.0, |m: f64, &t| m.max(t)),
+            turn: own,
+        })
+    }
+
+    /// True for the strong turn of a smooth nose.
+    fn is_nose(&self) -> bool {
+        self.angle > LARGEST_TURN
+            && !self.straight
+            && (self.sharpness < STANDS_OUT || self.led || self.turn > DOUBLES_BACK)
+    }
+
+    /// True if it is the wrong digit of the point or a neighbour: leaving that out cures it. A wrong
+    /// digit turns the polygon half as much beside it, at any spacing.
+    fn is_digit(&self, points: &[Vec3<f64>], closed: bool, file: f64) -> bool {
+        let n = points.len();
+        let cures = |gone: usize| {
+            if !closed && (gone < 2 || gone + 2 >= n) {
+                return false;
+            }
+            let left: Vec<Vec3<f64>> = (0..n).filter(|&j| j != gone).map(|j| points[j]).collect();
+            let m = left.len();
+            let near = (0..8).map(|k| (gone + m + k - 4) % m);
+            let seen = near.filter_map(|j| seen(&left, j, SIDE, closed)).filter(|s| s.judged);
+            // Beside a break the neighbours' own scale is large: the file's decides.
+            let off = seen.map(|s| s.off / shrunk(file, s.scale, 6.0).min(3.0 * file));
+            off.fold(0.0, f64::max) < CURED
+        };
+        self.sharpness < STANDS_OUT
+            && [self.index, (self.index + 1) % n, (self.index + n - 1) % n].into_iter().any(cures)
+    }
+}
+
+/// An own scale of `freedom` degrees, shrunk towards that of the file.
+fn shrunk(file: f64, own: f64, freedom: f64) -> f64 {
+    ((PRIOR[0] * file * file + freedom * own * own) / (PRIOR[0] + freedom)).sqrt()
+}
+
 /// Points at which a cubic through the neighbours wants a hinge.
 fn knuckles(points: &[Vec3<f64>], closed: bool, floor: f64) -> Vec<DataFinding> {
-    const HALF: usize = 4;
     let n = points.len();
     if !closed && n <= SHORT[1] {
         return short_knuckles(points, floor);
     }
-    if n < 2 * HALF + 1 {
+    if n < 2 * HINGE_SIDE + 1 {
         return Vec::new();
     }
-    struct Hinge {
-        index: usize,
-        size: f64,
-        scale: f64,
-        factor: f64,
-        angle: f64,
-        straight: bool,
-        /// Its turn over the largest beside it.
-        sharpness: f64,
-        /// True if the turns beside it grow towards it, as at a nose.
-        led: bool,
-        turn: f64,
-    }
-    let turn = |a: Vec3<f64>, b: Vec3<f64>, c: Vec3<f64>| {
-        let (u, v) = (b - a, c - b);
-        moldloft_num::Real::atan2(u.cross(v).norm(), u.dot(v))
-    };
-    let range = if closed { 0..n } else { HALF..n - HALF };
-    let all: Vec<Hinge> = range
-        .filter_map(|i| {
-            let near: Vec<Vec3<f64>> =
-                (0..=2 * HALF).map(|k| points[(i + n + k - HALF) % n]).collect();
-            let mut chord = vec![0.0];
-            for w in near.windows(2) {
-                chord.push(chord.last()? + (w[1] - w[0]).norm());
-            }
-            let half = 0.5 * chord[2 * HALF];
-            let t: Vec<f64> = chord.iter().map(|c| (c - chord[HALF]) / half).collect();
-            let row = |x: f64| [1.0, x, x * x, x * x * x, x.max(0.0)];
-            let columns = ThinQr::new(t.iter().map(|&x| row(x)).collect())?;
-            let c = columns.solve(&near);
-            let smooth = [c[0], c[1], c[2], c[3]];
-            let squares: f64 = near
-                .iter()
-                .zip(&t)
-                .map(|(q, &x)| {
-                    let [at, d, _] = cubic(&smooth, x);
-                    let (at, d) =
-                        (at + c[4] * x.max(0.0), d + c[4] * if x > 0.0 { 1.0 } else { 0.0 });
-                    let v = *q - at;
-                    (v - d * (v.dot(d) / d.norm_sq().max(f64::MIN_POSITIVE))).norm_sq()
-                })
-                .sum();
-            let d = c[1] + c[4] * 0.5;
-            let speed = d.norm();
-            let normal = c[4] - d * (c[4].dot(d) / (speed * speed));
-            let turns: Vec<f64> =
-                (1..2 * HALF).map(|k| turn(near[k - 1], near[k], near[k + 1])).collect();
-            let own = turns[HALF - 1];
-            let others =
-                || turns.iter().enumerate().filter(|(k, _)| *k != HALF - 1).map(|(_, t)| *t);
-            let angle = moldloft_num::Real::atan2(normal.norm(), speed);
-            Some(Hinge {
-                index: i,
-                size: normal.norm(),
-                scale: (squares / 4.0).sqrt(),
-                factor: 1.0 / columns.r[4][4],
-                angle,
-                straight: others().all(|t| t < 0.02),
-                sharpness: own / others().fold(f64::MIN_POSITIVE, f64::max),
-                led: {
-                    let beside = turns[HALF - 2].min(turns[HALF]);
-                    let farther = turns[..HALF - 2].iter().chain(&turns[HALF + 1..]);
-                    beside > 0.02 && beside > 1.3 * farther.fold(0.0, |m: f64, &t| m.max(t))
-                },
-                turn: own,
-            })
-        })
-        .collect();
+    let range = if closed { 0..n } else { HINGE_SIDE..n - HINGE_SIDE };
+    let all: Vec<Hinge> = range.filter_map(|i| Hinge::at(i, points)).collect();
     let file = (1.4826 * median(all.iter().map(|h| h.scale).collect()) / 1.2).max(floor);
-    let mut out = Vec::new();
-    for h in &all {
-        let scale = ((PRIOR[0] * file * file + 3.0 * h.scale * h.scale) / (PRIOR[0] + 3.0)).sqrt();
-        let score = h.size / (scale * h.factor);
-        let nose = h.angle > LARGEST_TURN
-            && !h.straight
-            && (h.sharpness < STANDS_OUT || h.led || h.turn > DOUBLES_BACK);
-        if score <= KNUCKLE_SCORE || h.sharpness <= 2.0 || nose {
-            continue;
-        }
-        // A wrong digit turns the polygon half as much beside it, at any spacing; it, the point's or a
-        // neighbour's, is cured by leaving it out.
-        let digit = h.sharpness < STANDS_OUT;
-        let cured = digit
-            && [h.index, (h.index + 1) % n, (h.index + n - 1) % n].into_iter().any(|gone| {
-                if !closed && (gone < 2 || gone + 2 >= n) {
-                    return false;
-                }
-                let left: Vec<Vec3<f64>> =
-                    (0..n).filter(|&j| j != gone).map(|j| points[j]).collect();
-                let m = left.len();
-                let near = (0..8).map(|k| (gone + m + k - 4) % m);
-                let fine = near
-                    .filter_map(|j| seen(&left, j, SIDE, closed))
-                    .filter(|s| s.judged)
-                    .map(|s| {
-                        let scale = ((PRIOR[0] * file * file + 6.0 * s.scale * s.scale)
-                            / (PRIOR[0] + 6.0))
-                            .sqrt();
-                        // Beside a break the neighbours' own scale is large: the file's decides.
-                        s.off / scale.min(3.0 * file)
-                    })
-                    .fold(0.0, f64::max);
-                fine < CURED
-            });
-        if !cured {
-            out.push(DataFinding::Knuckle { index: h.index, angle: h.angle, score });
-        }
-    }
-    out
+    let finding = |h: &Hinge| {
+        let score = h.size / (shrunk(file, h.scale, 3.0) * h.factor);
+        let smooth = score <= KNUCKLE_SCORE || h.sharpness <= 2.0 || h.is_nose();
+        (!smooth && !h.is_digit(points, closed, file)).then_some(DataFinding::Knuckle {
+            index: h.index,
+            angle: h.angle,
+            score,
+        })
+    };
+    all.iter().filter_map(finding).collect()
 }

@@ -288,31 +288,14 @@ impl<T: Real> DirectCurve<T> {
         Ok(own)
     }
 
+    /// The fairest control points within the tolerances.
     fn within(
         &self,
         laid: &SplineToFair<T>,
         tolerances: &[T],
     ) -> Result<MovedControlPoints<T>, FairError> {
         let SplineToFair { space, control: points, .. } = laid;
-        let measure = self.intent.measure.unwrap_or(Measure::Second);
-        // For `as = "points"` an end condition counts fixed points: 2 for "tangent".
-        let end = |end: EndContinuity| match (self.role, end) {
-            (PointRole::Points, EndContinuity::Points(k)) => EndContinuity::Points(k),
-            (PointRole::Points, end) => EndContinuity::Points(end.kept()),
-            (_, end) => end,
-        };
-        let radii = tolerances.iter().map(|t| t.re()).collect();
-        let mut job = Job {
-            space: space.clone(),
-            points: points.iter().map(|p| p.re()).collect(),
-            weights: self.own.weights.clone(),
-            limit: Limit::new(self.intent.motion, radii)?,
-            marks: laid.marks.clone(),
-            ends: self
-                .intent
-                .ends
-                .map(|e| end(e.unwrap_or(EndContinuity::of_control(self.role == PointRole::Fit)))),
-        };
+        let mut job = self.job(laid, tolerances)?;
         let (mut conditions, mut targets, mut owners) = (Vec::new(), Vec::new(), Vec::new());
         let joined_ends = self.joins.iter().enumerate();
         let joined_ends = joined_ends.filter_map(|(at, other)| other.as_ref().map(|o| (at, o)));
@@ -333,14 +316,9 @@ impl<T: Real> DirectCurve<T> {
             conditions.extend(demand.re().conditions(space, &job.points, t)?);
             owners.resize(conditions.len(), k);
         }
-        let lifted =
-            |points: Vec<Vec3<f64>>| points.into_iter().map(Vec3::lifted).collect::<Vec<Vec3<T>>>();
-        let gap = |measure: Measure, points: &[Vec3<f64>]| -> Result<Certificate, FairError> {
-            Ok(ball_gap(&job, &job.measure_rows(measure)?, RowNorm::Square, points))
-        };
         match self.method {
             CurveMethod::Optimum => {
-                let mut options = OptimumOptions::of(measure);
+                let mut options = OptimumOptions::of(self.measure());
                 options.bound = self.bound.unwrap_or(match self.role {
                     PointRole::Fit => Bound::Bezier,
                     _ => Bound::ControlPoints,
@@ -352,51 +330,99 @@ impl<T: Real> DirectCurve<T> {
                 let (certificate, active) = (Some(best.certificate), Some(best.active));
                 Ok(MovedControlPoints { points, certificate, active, steps: None })
             }
-            CurveMethod::Steps(mut options, steps) => {
-                if measure.norm() != RowNorm::Square {
-                    return Err(FairError::Squares);
-                }
-                if job.weights.is_some() && !still {
-                    return Err(FairError::NoDerivative(STEPS));
-                }
-                options.measure = measure;
-                options.stops.steps = steps.unwrap_or(points.len());
-                options.log = true;
-                let made = knot_removal(&job, &options)?;
-                let points = if still {
-                    lifted(made.points.clone())
-                } else {
-                    replay_with(&job, &options, &made.log, points, tolerances)?
-                };
-                let certificate = Some(gap(measure, &made.points)?);
-                Ok(MovedControlPoints {
-                    points,
-                    certificate,
-                    active: None,
-                    steps: Some(made.steps),
-                })
+            CurveMethod::Steps(options, steps) => {
+                self.stepped(&job, (options, steps), points, tolerances, still)
             }
             CurveMethod::Sweeps(count) | CurveMethod::Levels(count) => {
-                if measure.norm() != RowNorm::Square {
-                    return Err(FairError::Squares);
-                }
-                if !still {
-                    return Err(FairError::NoDerivative(STEPS));
-                }
-                let points = match self.method {
-                    CurveMethod::Sweeps(_) => sweeps(&job, measure, count)?,
-                    _ => multilevel(&job, measure, count, u32::BITS)?,
-                };
-                let certificate = Some(gap(measure, &points)?);
-                Ok(MovedControlPoints {
-                    points: lifted(points),
-                    certificate,
-                    active: None,
-                    steps: Some(count),
-                })
+                self.swept(&job, count, still)
             }
         }
     }
+
+    fn measure(&self) -> Measure {
+        self.intent.measure.unwrap_or(Measure::Second)
+    }
+
+    /// The control points with their limits and the conditions at the ends.
+    fn job(&self, laid: &SplineToFair<T>, tolerances: &[T]) -> Result<Job, FairError> {
+        // For `as = "points"` an end condition counts fixed points: 2 for "tangent".
+        let end = |end: EndContinuity| match (self.role, end) {
+            (PointRole::Points, EndContinuity::Points(k)) => EndContinuity::Points(k),
+            (PointRole::Points, end) => EndContinuity::Points(end.kept()),
+            (_, end) => end,
+        };
+        let default = EndContinuity::of_control(self.role == PointRole::Fit);
+        let radii = tolerances.iter().map(|t| t.re()).collect();
+        Ok(Job {
+            space: laid.space.clone(),
+            points: laid.control.iter().map(|p| p.re()).collect(),
+            weights: self.own.weights.clone(),
+            limit: Limit::new(self.intent.motion, radii)?,
+            marks: laid.marks.clone(),
+            ends: self.intent.ends.map(|e| end(e.unwrap_or(default))),
+        })
+    }
+
+    /// Faired by single steps; `still` is true if nothing carries a derivative.
+    fn stepped(
+        &self,
+        job: &Job,
+        (mut options, steps): (KnotRemovalOptions, Option<usize>),
+        points: &[Vec3<T>],
+        tolerances: &[T],
+        still: bool,
+    ) -> Result<MovedControlPoints<T>, FairError> {
+        let measure = self.measure();
+        if measure.norm() != RowNorm::Square {
+            return Err(FairError::Squares);
+        }
+        if job.weights.is_some() && !still {
+            return Err(FairError::NoDerivative(STEPS));
+        }
+        options.measure = measure;
+        options.stops.steps = steps.unwrap_or(points.len());
+        options.log = true;
+        let made = knot_removal(job, &options)?;
+        let points = if still {
+            made.points.iter().map(|&p| Vec3::lifted(p)).collect()
+        } else {
+            replay_with(job, &options, &made.log, points, tolerances)?
+        };
+        let certificate = Some(squares_gap(job, measure, &made.points)?);
+        Ok(MovedControlPoints { points, certificate, active: None, steps: Some(made.steps) })
+    }
+
+    /// Faired by sweeps or multilevel cycles; `still` is true if nothing carries a derivative.
+    fn swept(
+        &self,
+        job: &Job,
+        count: usize,
+        still: bool,
+    ) -> Result<MovedControlPoints<T>, FairError> {
+        let measure = self.measure();
+        if measure.norm() != RowNorm::Square {
+            return Err(FairError::Squares);
+        }
+        if !still {
+            return Err(FairError::NoDerivative(STEPS));
+        }
+        let points = match self.method {
+            CurveMethod::Sweeps(_) => sweeps(job, measure, count)?,
+            _ => multilevel(job, measure, count, u32::BITS)?,
+        };
+        let certificate = Some(squares_gap(job, measure, &points)?);
+        let points = points.into_iter().map(Vec3::lifted).collect();
+        Ok(MovedControlPoints { points, certificate, active: None, steps: Some(count) })
+    }
+}
+
+/// The optimality gap of control points for a measure that is a sum of squares.
+fn squares_gap(
+    job: &Job,
+    measure: Measure,
+    points: &[Vec3<f64>],
+) -> Result<Certificate, FairError> {
+    Ok(ball_gap(job, &job.measure_rows(measure)?, RowNorm::Square, points))
 }
 
 impl<T: Real> MovedControlPoints<T> {

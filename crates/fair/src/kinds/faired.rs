@@ -77,6 +77,21 @@ const MODES: [&str; 6] = ["optimum", "faithful", "literal", "vertex", "sweeps", 
 const SWEEPS: usize = 10;
 const CYCLES: usize = 2;
 
+/// Options of a curve that is faired by moving control points.
+struct DirectOptions<T> {
+    role: PointRole,
+    method: CurveMethod,
+    /// As [`CurveOptions::bound`].
+    bound: Option<Option<Bound>>,
+    intent: Intent<T>,
+    own: GivenKnots,
+}
+
+fn refused(what: &str, field: FieldId, expected: &'static str) -> CallError {
+    let text = format!("`{what}` cannot be combined with the other options");
+    CallError::new("other-mode", text).expected(expected).in_field(field)
+}
+
 impl<T: Real> CurveOptions<T> {
     /// The faired spline of points.
     pub fn faired(
@@ -103,13 +118,8 @@ impl<T: Real> CurveOptions<T> {
                 PointRole::Control => false,
             };
         if !near {
-            return self.direct(
-                points,
-                context,
-                demands,
-                (role, method, bound, intent, own),
-                unmade,
-            );
+            let options = DirectOptions { role, method, bound, intent, own };
+            return self.direct(points, context, demands, options, unmade);
         }
         if let Some((what, field)) = self.stepwise_only() {
             return Err(self.elsewhere(what, field, "mode = \"faithful\""));
@@ -154,89 +164,14 @@ impl<T: Real> CurveOptions<T> {
         points: &[Vec3<T>],
         context: CurveContext<T>,
         demands: Demands<T>,
-        (role, method, bound, mut intent, own): (
-            PointRole,
-            CurveMethod,
-            Option<Option<Bound>>,
-            Intent<T>,
-            GivenKnots,
-        ),
+        mut options: DirectOptions<T>,
         unmade: impl Fn(FairError) -> CallError,
     ) -> Result<FairedSpline<T>, CallError> {
         let fields = &self.fields;
-        let optimum = matches!(method, CurveMethod::Optimum);
-        let stepwise = matches!(method, CurveMethod::Steps(..));
-        if bound == Some(None) {
-            let text = "the bound \"data\" is for optima near their points";
-            return Err(CallError::new("not-near", text)
-                .expected("as = \"fit\", mode = \"optimum\", without knots, weights and count")
-                .found("bound = \"data\"")
-                .in_field(fields.bound));
-        }
-        if let Some((what, field)) = self.near_only(role) {
-            return Err(self.not_near(what, field));
-        }
-        if !matches!(intent.goal, Goal::Near(_) | Goal::Fairest) || self.share.is_some() {
-            let (what, field) =
-                if self.share.is_some() { ("share", fields.share) } else { ("goal", fields.goal) };
-            return Err(self.not_near(what, field));
-        }
-        let refused = |what: &str, field, expected: &'static str| {
-            CallError::new(
-                "other-mode",
-                format!("`{what}` cannot be combined with the other options"),
-            )
-            .expected(expected)
-            .in_field(field)
-        };
-        if !optimum && bound.is_some() {
-            return Err(refused("bound", fields.bound, "mode = \"optimum\""));
-        }
-        if !optimum && !demands.conditions.is_empty() {
-            let field = if context.keep.is_empty() { fields.through } else { context.keep_field };
-            let field = if self.tangents.is_some() { fields.tangents } else { field };
-            return Err(refused("through, tangents and keep", field, "mode = \"optimum\""));
-        }
-        if let Some((what, field)) = self.stepwise_only().filter(|_| !stepwise && optimum) {
-            return Err(self.elsewhere(what, field, "mode = \"faithful\""));
-        }
-        if let Some((what, field)) =
-            self.stepwise_only().filter(|(what, _)| !stepwise && *what != "steps")
-        {
-            return Err(self.elsewhere(what, field, "mode = \"faithful\""));
-        }
-        let conditioned =
-            context.joins.iter().any(Option::is_some) || !demands.conditions.is_empty();
-        if own.weights.is_some() && conditioned {
-            let text = "weights do not go together with joins, through, tangents and keep";
-            return Err(CallError::new("not-control", text)
-                .expected("one of them")
-                .found("both")
-                .in_field(fields.weights));
-        }
-        let fitted = own.knots.is_some() || own.weights.is_some() || self.count.is_some();
-        if role == PointRole::Fit && fitted && !self.breaks.is_empty() {
-            return Err(refused("breaks", fields.breaks, "a fit of all points without knots"));
-        }
-        if role != PointRole::Fit && self.count.is_some() {
-            return Err(refused("count", fields.count, "as = \"fit\""));
-        }
-        if role == PointRole::Points && (own.knots.is_some() || own.weights.is_some()) {
-            return Err(CallError::new(
-                "not-control",
-                "knots and weights are of control points and fits",
-            )
-            .expected("as = \"control\" or \"fit\"")
-            .found("as = \"points\"")
-            .in_field(if own.knots.is_some() { fields.knots } else { fields.weights }));
-        }
-        if role != PointRole::Fit && !matches!(&*self.spacing, "auto" | "index") {
-            return Err(refused(
-                "spacing",
-                fields.spacing,
-                "as = \"fit\": the index is the parameter here",
-            ));
-        }
+        self.check_near(&options)?;
+        self.check_mode(&context, &demands, &options)?;
+        self.check_knots(&options)?;
+        let DirectOptions { role, ref mut intent, .. } = options;
         intent.spacing = match &*self.spacing {
             "chord" | "centripetal" | "index" => intent.spacing,
             "auto" if role == PointRole::Fit => ParameterSpacing::Chord,
@@ -248,6 +183,7 @@ impl<T: Real> CurveOptions<T> {
         };
         let fitted = role == PointRole::Fit;
         intent.ends = intent.ends.map(|e| e.or(Some(EndContinuity::of_control(fitted))));
+        let DirectOptions { method, bound, intent, own, .. } = options;
         let kept = intent.ends;
         let joined = context.joins.each_ref().map(Option::is_some);
         let closed = intent.closed;
@@ -277,6 +213,95 @@ impl<T: Real> CurveOptions<T> {
         let end = |at: usize| !closed && clamped && (keeps(kept[at]) || joined[at]);
         let members = made.figures.members_of_moves();
         Ok(FairedSpline { curve: FairedCurve::Still(spline), members, kept: [end(0), end(1)] })
+    }
+
+    /// Refuses options of curves near their points.
+    fn check_near(&self, options: &DirectOptions<T>) -> Result<(), CallError> {
+        let fields = &self.fields;
+        if options.bound == Some(None) {
+            let text = "the bound \"data\" is for optima near their points";
+            return Err(CallError::new("not-near", text)
+                .expected("as = \"fit\", mode = \"optimum\", without knots, weights and count")
+                .found("bound = \"data\"")
+                .in_field(fields.bound));
+        }
+        if let Some((what, field)) = self.near_only(options.role) {
+            return Err(self.not_near(what, field));
+        }
+        if !matches!(options.intent.goal, Goal::Near(_) | Goal::Fairest) || self.share.is_some() {
+            let (what, field) =
+                if self.share.is_some() { ("share", fields.share) } else { ("goal", fields.goal) };
+            return Err(self.not_near(what, field));
+        }
+        Ok(())
+    }
+
+    /// Refuses options of another mode, and weights beside conditions.
+    fn check_mode(
+        &self,
+        context: &CurveContext<T>,
+        demands: &Demands<T>,
+        options: &DirectOptions<T>,
+    ) -> Result<(), CallError> {
+        let fields = &self.fields;
+        let optimum = matches!(options.method, CurveMethod::Optimum);
+        let stepwise = matches!(options.method, CurveMethod::Steps(..));
+        if !optimum && options.bound.is_some() {
+            return Err(refused("bound", fields.bound, "mode = \"optimum\""));
+        }
+        if !optimum && !demands.conditions.is_empty() {
+            let field = if context.keep.is_empty() { fields.through } else { context.keep_field };
+            let field = if self.tangents.is_some() { fields.tangents } else { field };
+            return Err(refused("through, tangents and keep", field, "mode = \"optimum\""));
+        }
+        if let Some((what, field)) = self.stepwise_only().filter(|_| !stepwise && optimum) {
+            return Err(self.elsewhere(what, field, "mode = \"faithful\""));
+        }
+        if let Some((what, field)) =
+            self.stepwise_only().filter(|(what, _)| !stepwise && *what != "steps")
+        {
+            return Err(self.elsewhere(what, field, "mode = \"faithful\""));
+        }
+        let conditioned =
+            context.joins.iter().any(Option::is_some) || !demands.conditions.is_empty();
+        if options.own.weights.is_some() && conditioned {
+            let text = "weights do not go together with joins, through, tangents and keep";
+            return Err(CallError::new("not-control", text)
+                .expected("one of them")
+                .found("both")
+                .in_field(fields.weights));
+        }
+        Ok(())
+    }
+
+    /// Refuses knots, weights, breaks and spacings that the role of the points excludes.
+    fn check_knots(&self, options: &DirectOptions<T>) -> Result<(), CallError> {
+        let fields = &self.fields;
+        let DirectOptions { role, own, .. } = options;
+        let fitted = own.knots.is_some() || own.weights.is_some() || self.count.is_some();
+        if *role == PointRole::Fit && fitted && !self.breaks.is_empty() {
+            return Err(refused("breaks", fields.breaks, "a fit of all points without knots"));
+        }
+        if *role != PointRole::Fit && self.count.is_some() {
+            return Err(refused("count", fields.count, "as = \"fit\""));
+        }
+        if *role == PointRole::Points && (own.knots.is_some() || own.weights.is_some()) {
+            return Err(CallError::new(
+                "not-control",
+                "knots and weights are of control points and fits",
+            )
+            .expected("as = \"control\" or \"fit\"")
+            .found("as = \"points\"")
+            .in_field(if own.knots.is_some() { fields.knots } else { fields.weights }));
+        }
+        if *role != PointRole::Fit && !matches!(&*self.spacing, "auto" | "index") {
+            return Err(refused(
+                "spacing",
+                fields.spacing,
+                "as = \"fit\": the index is the parameter here",
+            ));
+        }
+        Ok(())
     }
 
     /// Goal, motion, end conditions and parametrisation.

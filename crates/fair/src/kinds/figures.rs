@@ -1,6 +1,6 @@
 //! Members of faired objects.
 
-use crate::{Certificate, DataFit, GridFit, NetworkFit};
+use crate::{Certificate, DataFit, GridFit, NetworkFit, Optimum};
 
 /// Figures of a faired object, the values of its members.
 #[derive(Clone, Copy, Debug, Default)]
@@ -43,6 +43,11 @@ impl FairFigures {
     ) -> Self {
         let own = Self::of_residuals(residuals, radii, findings);
         own.of_goal(&made.certificate, made.used, made.fairest_used)
+    }
+
+    /// Figures of a moved control net, from the moves and the optimum, if one was solved for.
+    pub fn of_net(moved: impl Iterator<Item = f64>, best: Option<&Optimum>) -> Self {
+        Self::of_moves(moved, best.map(|b| (&b.certificate, Some(b.active), None)))
     }
 
     /// Figures of moved control points or points, from the moves and, if solved, the certificate,

@@ -18,7 +18,7 @@ mod surface_method;
 
 use crate::words::{self, WordError};
 use crate::{
-    EndContinuity, FairError, Goal, Measure, Motion, ParameterSpacing, PointSpacing, Space,
+    Bound, EndContinuity, FairError, Goal, Measure, Motion, ParameterSpacing, PointSpacing, Space,
 };
 use moldloft_num::{Real, Vec3};
 use moldloft_registry::export::StaticRow;
@@ -211,6 +211,15 @@ pub(crate) fn faithful(name: &str, field: FieldId) -> Result<bool, CallError> {
         "optimum" => Ok(false),
         "faithful" => Ok(true),
         _ => Err(unknown("mode", name, &["optimum", "faithful"], field)),
+    }
+}
+
+/// What the tolerance of points bounds: their moves, or those of the curves.
+pub(crate) fn bound_of_points(name: &str, field: FieldId) -> Result<Bound, CallError> {
+    match name {
+        "points" => Ok(Bound::ControlPoints),
+        "curve" => Ok(Bound::Bezier),
+        _ => Err(unknown("bound", name, &["points", "curve"], field)),
     }
 }
 

@@ -6,9 +6,9 @@ use super::shapes::{self, AnchoredSpline};
 use super::{ArgumentFields, fault, measure};
 use crate::curve::request::ACCURACY;
 use crate::{
-    Bound, EndContinuity, FairError, InterpolationSpace, Limit, NamedCurves, Network,
-    NetworkCondition, NetworkCurve, ParameterSpacing, ShapeCondition, Space, are_exact,
-    interpolate_with_corners, line_findings, parameters_across,
+    Bound, EndContinuity, FairError, Goal, InterpolationSpace, Limit, Measure, Motion, NamedCurves,
+    Network, NetworkCondition, NetworkCurve, NetworkFit, ParameterSpacing, ShapeCondition, Space,
+    are_exact, interpolate_with_corners, line_findings, parameters_across,
 };
 use moldloft_num::trace::Key;
 use moldloft_num::{Real, Vec3};
@@ -197,6 +197,14 @@ impl<T: Real> Joined<T> {
         given.unwrap_or_default().iter().enumerate().map(index).collect()
     }
 
+    /// Breaks of curve `k` among its own points: those of the network, and crossings with the curves
+    /// `along`.
+    fn marks(&self, k: usize, marked: &[usize], along: &[usize]) -> Vec<usize> {
+        let own = &self.curves[k].0;
+        let crossed = |i: &usize| along.iter().any(|&l| l != k && self.curves[l].0.contains(i));
+        (0..own.len()).filter(|&c| marked.contains(&own[c]) || crossed(&own[c])).collect()
+    }
+
     /// Indices of the fixed ends.
     fn kept(&self, which: &str) -> Result<Vec<usize>, CallError> {
         let mut ends = vec![0usize; self.points.len()];
@@ -254,219 +262,287 @@ impl<T: Real> FairNet<T> {
 
 impl<T: Real> Build<T> for FairNet<T> {
     fn build(self, _: &Context) -> Result<Value<T>, CallError> {
+        let task = self.task()?;
+        let numbers = 0..task.joined.curves.len();
+        let strands: Result<Vec<_>, CallError> = numbers.clone().map(|k| task.strand(k)).collect();
+        let (strands, ats): (Vec<_>, Vec<_>) = strands?.into_iter().unzip();
+        let (moved, fit) = task.moved(strands, &ats).map_err(|e| task.unmade(e))?;
+        let figures = fit.map(|fit| task.figures(&fit, &moved));
+        let curve = |k: usize| {
+            let curve = task.curve(k, ats[k].as_deref(), &moved)?;
+            Ok(Value::Curve(match &figures {
+                Some(all) => curve.with_figures(&all[k].members()),
+                None => curve,
+            }))
+        };
+        let curves: Result<Vec<_>, CallError> = numbers.map(curve).collect();
+        Ok(Value::list(curves?))
+    }
+}
+
+/// Checked arguments of a network.
+struct NetTask<'a, T: Real> {
+    given: &'a FairNet<T>,
+    joined: Joined<T>,
+    /// Positions of the points.
+    xyz: Vec<Vec3<T>>,
+    tolerances: Vec<T>,
+    /// Points that are breaks, and for each curve its breaks among its own points.
+    marked: Vec<usize>,
+    marks: Vec<Vec<usize>>,
+    /// Fixed points, and true for each point that does not move.
+    kept: Vec<usize>,
+    still: Vec<bool>,
+    conditions: Vec<AskedCondition>,
+    /// `None`: by index.
+    spacing: Option<ParameterSpacing>,
+    measure: Measure,
+    goal: Goal,
+    motion: Motion,
+    bound: Bound,
+    /// Passes of the mode "faithful".
+    passes: Option<usize>,
+}
+
+impl<T: Real> FairNet<T> {
+    const PLACES: ArgumentFields = ArgumentFields {
+        points: Self::CURVES,
+        tolerance: Self::TOLERANCE,
+        degree: Self::DEGREE,
+        breaks: Self::BREAKS,
+    };
+
+    /// Checks the arguments.
+    fn task(&self) -> Result<NetTask<'_, T>, CallError> {
         let joined = Joined::of(&self.curves);
         let marked = joined.places(self.breaks.as_deref(), "a break", Self::BREAKS)?;
         let fixed = joined.places(self.fixed.as_deref(), "a fixed point", Self::FIXED)?;
-        let own_at = joined.places(
-            self.tolerances_at.as_deref(),
-            "a point with a tolerance of its own",
-            Self::TOLERANCES_AT,
-        )?;
-        let own = self.tolerances.as_deref().unwrap_or_default();
-        if own.len() != own_at.len() {
-            return Err(CallError::new("wrong-count", "each of `tolerances_at` has a tolerance")
-                .expected(format!("{} tolerances", own_at.len()))
-                .found(own.len().to_string())
-                .in_field(Self::TOLERANCES));
-        }
-        let mut tolerances = vec![self.tolerance; joined.points.len()];
-        for (&i, &t) in own_at.iter().zip(own) {
-            tolerances[i] = t;
-        }
         let released = joined.places(self.release.as_deref(), "a released point", Self::RELEASE)?;
-        for &i in &released {
-            tolerances[i] = T::from(f64::INFINITY);
-        }
-        let degree = self.degree;
+        let tolerances = self.tolerances_of(&joined, &released)?;
         let along = joined.numbers(self.knuckles.as_deref(), Self::KNUCKLES)?;
-        let marks_of = |k: usize| -> Vec<usize> {
-            let own = &joined.curves[k].0;
-            let crossed =
-                |i: &usize| along.iter().any(|&l| l != k && joined.curves[l].0.contains(i));
-            (0..own.len()).filter(|&c| marked.contains(&own[c]) || crossed(&own[c])).collect()
-        };
-        let places = ArgumentFields {
-            points: Self::CURVES,
-            tolerance: Self::TOLERANCE,
-            degree: Self::DEGREE,
-            breaks: Self::BREAKS,
-        };
-        let spaced = super::plain_spacing(&self.spacing, Self::SPACING)?;
-        let budget = if &*self.goal == "near" { super::NETWORK_BUDGET } else { super::BUDGET };
-        constant("share", Self::SHARE, self.share.into_iter())?;
-        let goal = super::goal_of(
-            &self.goal,
-            self.share.map(|s| s.re()),
-            budget,
-            [Self::GOAL, Self::SHARE],
-        )?;
-        let index =
-            matches!(spaced, ParameterSpacing::Uniform) || super::faithful(&self.mode, Self::MODE)?;
+        let marks = (0..joined.curves.len()).map(|k| joined.marks(k, &marked, &along)).collect();
+        let spacing = super::plain_spacing(&self.spacing, Self::SPACING)?;
+        let goal = self.goal()?;
+        let passes = super::faithful(&self.mode, Self::MODE)?.then_some(self.passes);
+        let index = matches!(spacing, ParameterSpacing::Uniform) || passes.is_some();
         let motion =
             super::motion(self.along, self.motion.as_deref(), [Self::ALONG, Self::MOTION])?;
-        let (mut strands, mut ats) = (Vec::new(), Vec::new());
-        for (k, (own, closed)) in joined.curves.iter().enumerate() {
-            let space = match (closed, own.len()) {
-                (true, n) => Space::closed(degree, n),
-                (false, n) if n < degree + 2 => {
-                    Err(FairError::TooFew { expected: degree + 2, actual: n })
-                }
-                (false, n) => Space::floating(degree, n),
-            };
-            let space = space.map_err(|e| fault(e, &places).in_item(k).in_field(Self::CURVES))?;
-            if let Some(twice) = (0..own.len()).find(|&i| own[..i].contains(&own[i])) {
-                return Err(CallError::new("point-twice", "a curve passes twice through a point")
-                    .expected("different points; only the first may come again, at the end")
-                    .related(joined.points[own[twice]].key, "is listed twice")
-                    .in_item(k)
-                    .in_field(Self::CURVES));
-            }
-            let (marks, ends) = (marks_of(k), [EndContinuity::Points(0); 2]);
-            let list: Vec<Vec3<T>> = own.iter().map(|&i| joined.points[i].xyz).collect();
-            let radii: Vec<f64> = own.iter().map(|&i| tolerances[i].re()).collect();
-            let limits = (motion, &radii[..]);
-            let at = if index {
-                None
-            } else {
-                let at = match parameters_across(&list, spaced, *closed, limits) {
-                    Err(FairError::TurnsAlong { .. } | FairError::Coincident { .. })
-                        if matches!(spaced, ParameterSpacing::Along(_)) =>
-                    {
-                        parameters_across(&list, ParameterSpacing::Chord, *closed, limits)
-                    }
-                    other => other,
-                };
-                Some(at.map_err(|e| fault(e, &places).in_item(k).in_field(Self::CURVES))?)
-            };
-            let plain = at.as_ref().map(|at| at.iter().map(|t| t.re()).collect());
-            ats.push(at);
-            strands.push(NetworkCurve {
-                space,
-                points: own.clone(),
-                weights: None,
-                marks,
-                runs: Vec::new(),
-                ends,
-                at: plain,
-            });
-        }
         let measure = measure(&self.measure, Self::MEASURE)?;
-        let passes = super::faithful(&self.mode, Self::MODE)?.then_some(self.passes);
-        let known = matches!(goal, crate::Goal::Near(_) | crate::Goal::Fairest);
-        if passes.is_some() && (!known || self.share.is_some()) {
-            let (what, field) = if known { ("share", Self::SHARE) } else { ("goal", Self::GOAL) };
-            return Err(CallError::new("other-mode", format!("`{what}` is for the optimum"))
+        let mut kept = joined.kept(&self.kept_ends)?;
+        kept.extend(fixed.iter().filter(|i| !kept.contains(i)).copied().collect::<Vec<_>>());
+        kept.retain(|i| !released.contains(i));
+        let mut still: Vec<bool> = tolerances.iter().map(|t| t.re() == 0.0).collect();
+        kept.iter().chain(&marked).for_each(|&i| still[i] = true);
+        let conditions = self.conditions(&joined)?;
+        let bound = super::bound_of_points(&self.bound, Self::BOUND)?;
+        let known = matches!(goal, Goal::Near(_) | Goal::Fairest);
+        let optimum_only = [
+            (!known, "`goal` is for the optimum", Self::GOAL),
+            (self.share.is_some(), "`share` is for the optimum", Self::SHARE),
+            (
+                !conditions.is_empty() || bound != Bound::ControlPoints,
+                "conditions and bounds are for the optimum",
+                Self::MODE,
+            ),
+        ];
+        if let Some((_, message, field)) =
+            optimum_only.into_iter().find(|o| passes.is_some() && o.0)
+        {
+            return Err(CallError::new("other-mode", message)
                 .expected("mode = \"optimum\"")
                 .found("mode = \"faithful\"")
                 .in_field(field));
         }
-        let mut kept = joined.kept(&self.kept_ends)?;
-        kept.extend(fixed.iter().filter(|i| !kept.contains(i)).copied().collect::<Vec<_>>());
-        let mut still: Vec<bool> = tolerances.iter().map(|t| t.re() == 0.0).collect();
-        kept.retain(|i| !released.contains(i));
-        kept.iter().chain(&marked).for_each(|&i| still[i] = true);
-        let wanted = self.conditions(&joined)?;
-        let shaped = !wanted.is_empty();
-        let bound = match &*self.bound {
-            "points" => Bound::ControlPoints,
-            "curve" => Bound::Bezier,
-            other => return Err(super::unknown("bound", other, &["points", "curve"], Self::BOUND)),
-        };
-        if passes.is_some() && (shaped || bound != Bound::ControlPoints) {
-            return Err(CallError::new("other-mode", "conditions and bounds are for the optimum")
-                .expected("mode = \"optimum\"")
-                .found("mode = \"faithful\"")
-                .in_field(Self::MODE));
+        Ok(NetTask {
+            given: self,
+            xyz: joined.points.iter().map(|p| p.xyz).collect(),
+            joined,
+            tolerances,
+            marked,
+            marks,
+            kept,
+            still,
+            conditions,
+            spacing: (!index).then_some(spacing),
+            measure,
+            goal,
+            motion,
+            bound,
+            passes,
+        })
+    }
+
+    /// The tolerance of each point; that of released points is infinite.
+    fn tolerances_of(&self, joined: &Joined<T>, released: &[usize]) -> Result<Vec<T>, CallError> {
+        let what = "a point with a tolerance of its own";
+        let places = joined.places(self.tolerances_at.as_deref(), what, Self::TOLERANCES_AT)?;
+        let own = self.tolerances.as_deref().unwrap_or_default();
+        if own.len() != places.len() {
+            return Err(CallError::new("wrong-count", "each of `tolerances_at` has a tolerance")
+                .expected(format!("{} tolerances", places.len()))
+                .found(own.len().to_string())
+                .in_field(Self::TOLERANCES));
         }
-        let xyz: Vec<Vec3<T>> = joined.points.iter().map(|p| p.xyz).collect();
-        let mut fit = None;
-        let solve = || -> Result<Vec<Vec3<T>>, FairError> {
-            let limit = Limit::new(motion, tolerances.iter().map(|t| t.re()).collect())?;
-            let plain = xyz.iter().map(|p| p.re()).collect();
-            let mut network = Network::new(plain, strands, limit)?;
-            network.kept = kept;
-            network.bound = bound;
-            if shaped {
-                network = network.with_conditions(wanted.iter().map(|w| w.0.clone()).collect())?;
+        let mut tolerances = vec![self.tolerance; joined.points.len()];
+        let endless = released.iter().map(|&i| (i, T::from(f64::INFINITY)));
+        for (i, t) in places.into_iter().zip(own.iter().copied()).chain(endless) {
+            tolerances[i] = t;
+        }
+        Ok(tolerances)
+    }
+
+    fn goal(&self) -> Result<Goal, CallError> {
+        let budget = if &*self.goal == "near" { super::NETWORK_BUDGET } else { super::BUDGET };
+        constant("share", Self::SHARE, self.share.into_iter())?;
+        let share = self.share.map(|s| s.re());
+        super::goal_of(&self.goal, share, budget, [Self::GOAL, Self::SHARE])
+    }
+}
+
+impl<T: Real> NetTask<'_, T> {
+    /// Curve `k` of the network, and the parameters of its points unless by index.
+    fn strand(&self, k: usize) -> Result<(NetworkCurve, Option<Vec<T>>), CallError> {
+        let ((own, closed), degree) = (&self.joined.curves[k], self.given.degree);
+        let about = |e: FairError| self.at_curve(e, k);
+        let space = match (closed, own.len()) {
+            (true, n) => Space::closed(degree, n),
+            (false, n) if n < degree + 2 => {
+                Err(FairError::TooFew { expected: degree + 2, actual: n })
             }
-            let near = matches!(goal, crate::Goal::Near(_));
-            if index && near && !shaped && are_exact(&network.points, &joined.curves, &marked) {
-                return Ok(xyz.clone());
-            }
-            if let Some(passes) = passes {
-                return network.passes_with(passes, self.steps, &xyz, &tolerances);
-            }
-            let (points, own) =
-                network.toward_with(measure, goal, ACCURACY, &xyz, &tolerances, &ats)?;
-            fit = Some(own);
-            Ok(points)
+            (false, n) => Space::floating(degree, n),
         };
-        let moved = solve().map_err(|e| {
-            let own = |k: usize| wanted.get(k).map_or((0, Self::SHAPE), |w| (w.1, w.2));
-            let said = e.to_string();
-            match e {
-                FairError::Shapeless { shape, why } => {
-                    let (item, field) = own(shape);
-                    CallError::new("no-shape", why).in_item(item).in_field(field)
-                }
-                FairError::Shape { shapes, .. } => {
-                    let (item, field) = own(shapes.first().copied().unwrap_or_default());
-                    CallError::new("no-shape", said).in_item(item).in_field(field)
-                }
-                other => fault(other, &places),
+        let space = space.map_err(about)?;
+        if let Some(twice) = (0..own.len()).find(|&i| own[..i].contains(&own[i])) {
+            return Err(CallError::new("point-twice", "a curve passes twice through a point")
+                .expected("different points; only the first may come again, at the end")
+                .related(self.joined.points[own[twice]].key, "is listed twice")
+                .in_item(k)
+                .in_field(FairNet::<T>::CURVES));
+        }
+        let at = self.spacing.map(|spacing| self.parameters(k, spacing)).transpose();
+        let at = at.map_err(about)?;
+        let curve = NetworkCurve {
+            space,
+            points: own.clone(),
+            weights: None,
+            marks: self.marks[k].clone(),
+            runs: Vec::new(),
+            ends: [EndContinuity::Points(0); 2],
+            at: at.as_ref().map(|at| at.iter().map(|t| t.re()).collect()),
+        };
+        Ok((curve, at))
+    }
+
+    /// Parameters of the points of curve `k`: chord lengths where a coordinate is not monotone.
+    fn parameters(&self, k: usize, spacing: ParameterSpacing) -> Result<Vec<T>, FairError> {
+        let (own, closed) = &self.joined.curves[k];
+        let list: Vec<Vec3<T>> = own.iter().map(|&i| self.xyz[i]).collect();
+        let radii: Vec<f64> = own.iter().map(|&i| self.tolerances[i].re()).collect();
+        let limits = (self.motion, &radii[..]);
+        match parameters_across(&list, spacing, *closed, limits) {
+            Err(FairError::TurnsAlong { .. } | FairError::Coincident { .. })
+                if matches!(spacing, ParameterSpacing::Along(_)) =>
+            {
+                parameters_across(&list, ParameterSpacing::Chord, *closed, limits)
             }
+            other => other,
+        }
+    }
+
+    /// The moved points, and the fit of an optimum.
+    fn moved(
+        &self,
+        strands: Vec<NetworkCurve>,
+        ats: &[Option<Vec<T>>],
+    ) -> Result<(Vec<Vec3<T>>, Option<NetworkFit>), FairError> {
+        let (xyz, tolerances) = (&self.xyz, &self.tolerances);
+        let limit = Limit::new(self.motion, tolerances.iter().map(|t| t.re()).collect())?;
+        let plain = xyz.iter().map(|p| p.re()).collect();
+        let mut network = Network::new(plain, strands, limit)?;
+        network.kept.clone_from(&self.kept);
+        network.bound = self.bound;
+        let shaped = !self.conditions.is_empty();
+        if shaped {
+            let conditions = self.conditions.iter().map(|c| c.0.clone()).collect();
+            network = network.with_conditions(conditions)?;
+        }
+        let stays = self.spacing.is_none() && matches!(self.goal, Goal::Near(_)) && !shaped;
+        if stays && are_exact(&network.points, &self.joined.curves, &self.marked) {
+            return Ok((xyz.clone(), None));
+        }
+        if let Some(passes) = self.passes {
+            return Ok((network.passes_with(passes, self.given.steps, xyz, tolerances)?, None));
+        }
+        let (points, fit) =
+            network.toward_with(self.measure, self.goal, ACCURACY, xyz, tolerances, ats)?;
+        Ok((points, Some(fit)))
+    }
+
+    /// Figures of each curve.
+    fn figures(&self, fit: &NetworkFit, moved: &[Vec3<T>]) -> Vec<FairFigures> {
+        let plain: Vec<Vec3<f64>> = self.xyz.iter().map(|p| p.re()).collect();
+        let found = line_findings(&plain, &self.joined.curves, &self.marked);
+        let off: Vec<f64> = super::moves(moved, &plain).collect();
+        let free = |i: usize| if self.still[i] { 0.0 } else { self.tolerances[i].re() };
+        let of = |(k, (own, _)): (usize, &(Vec<usize>, bool))| {
+            let residuals: Vec<f64> = own.iter().map(|&i| off[i]).collect();
+            let radii: Vec<f64> = own.iter().map(|&i| free(i)).collect();
+            let findings = found.iter().filter(|f| f.0 == k).count();
+            FairFigures::of_network(fit, &residuals, &radii, findings)
+        };
+        self.joined.curves.iter().enumerate().map(of).collect()
+    }
+
+    /// Curve `k` through its moved points; `at` are the parameters of the given points, which the
+    /// moved points are near, unless by index.
+    fn curve(
+        &self,
+        k: usize,
+        at: Option<&[T]>,
+        moved: &[Vec3<T>],
+    ) -> Result<CurveRef<T>, CallError> {
+        let ((own, closed), degree) = (&self.joined.curves[k], self.given.degree);
+        let points: Vec<Vec3<T>> = own.iter().map(|&i| moved[i]).collect();
+        // A moved end is not its point object any more.
+        let end = |i: Option<&usize>| {
+            i.filter(|&&i| !closed && self.still[i]).and_then(|&i| self.joined.points[i].key)
+        };
+        let ends = [end(own.first()), end(own.last())];
+        let about = |e: FairError| self.at_curve(e, k);
+        let marks = &self.marks[k];
+        if let Some(at) = at {
+            let runs = runs_of(&self.conditions, k);
+            let curve = through(degree, &points, at, (marks, &runs), *closed).map_err(about)?;
+            return Ok(CurveRef::new(AnchoredSpline { curve, ends }, 0));
+        }
+        let uniform = ParameterSpacing::Uniform;
+        let sharp =
+            interpolate_with_corners(degree, &points, uniform, *closed, marks).map_err(about)?;
+        let curve = shapes::curve(&sharp.fit.space, &sharp.points).map_err(|e| {
+            CallError::new("no-spline", e.to_string()).in_item(k).in_field(FairNet::<T>::CURVES)
         })?;
-        let figures = fit.map(|fit| {
-            let plain: Vec<Vec3<f64>> = xyz.iter().map(|p| p.re()).collect();
-            let found = line_findings(&plain, &joined.curves, &marked);
-            let off: Vec<f64> =
-                moved.iter().zip(&plain).map(|(p, q)| (p.re() - *q).norm()).collect();
-            let free = |i: usize| if still[i] { 0.0 } else { tolerances[i].re() };
-            let of = |own: &[usize], findings: usize| {
-                let residuals: Vec<f64> = own.iter().map(|&i| off[i]).collect();
-                let radii: Vec<f64> = own.iter().map(|&i| free(i)).collect();
-                FairFigures::of_network(&fit, &residuals, &radii, findings)
-            };
-            let each = joined.curves.iter().enumerate();
-            each.map(|(k, (own, _))| of(own, found.iter().filter(|f| f.0 == k).count()))
-                .collect::<Vec<_>>()
-        });
-        let said = |curve: CurveRef<T>, k: usize| match &figures {
-            Some(all) => curve.with_figures(&all[k].members()),
-            None => curve,
+        Ok(CurveRef::new(AnchoredSpline { curve, ends }, 0))
+    }
+
+    /// Converts an error of curve `k` to one at its argument.
+    fn at_curve(&self, error: FairError, k: usize) -> CallError {
+        fault(error, &FairNet::<T>::PLACES).in_item(k).in_field(FairNet::<T>::CURVES)
+    }
+
+    /// Converts an error of the whole network to one at its argument.
+    fn unmade(&self, error: FairError) -> CallError {
+        let at = |k: usize, said: String| {
+            let (item, field) =
+                self.conditions.get(k).map_or((0, FairNet::<T>::SHAPE), |c| (c.1, c.2));
+            CallError::new("no-shape", said).in_item(item).in_field(field)
         };
-        let curve = |(k, (own, closed)): (usize, &(Vec<usize>, bool))| {
-            let points: Vec<Vec3<T>> = own.iter().map(|&i| moved[i]).collect();
-            // A moved end is not its point object any more.
-            let end = |i: Option<&usize>| {
-                i.filter(|&&i| !closed && still[i]).and_then(|&i| joined.points[i].key)
-            };
-            let ends = [end(own.first()), end(own.last())];
-            let about = |e: FairError| fault(e, &places).in_item(k).in_field(Self::CURVES);
-            if let Some(at) = &ats[k] {
-                // The parameters of the given points are used, since the moved points are near
-                // them.
-                let sharp = (marks_of(k), runs_of(&wanted, k));
-                let curve = through(degree, &points, at, &sharp, *closed).map_err(about)?;
-                return Ok(Value::Curve(said(CurveRef::new(AnchoredSpline { curve, ends }, 0), k)));
+        match error {
+            FairError::Shapeless { shape, why } => at(shape, why.to_string()),
+            FairError::Shape { ref shapes, .. } => {
+                at(shapes.first().copied().unwrap_or_default(), error.to_string())
             }
-            let marks = marks_of(k);
-            let sharp = interpolate_with_corners(
-                degree,
-                &points,
-                ParameterSpacing::Uniform,
-                *closed,
-                &marks,
-            )
-            .map_err(about)?;
-            let curve = shapes::curve(&sharp.fit.space, &sharp.points).map_err(|e| {
-                CallError::new("no-spline", e.to_string()).in_item(k).in_field(Self::CURVES)
-            })?;
-            Ok(Value::Curve(said(CurveRef::new(AnchoredSpline { curve, ends }, 0), k)))
-        };
-        let curves: Result<Vec<_>, CallError> =
-            joined.curves.iter().enumerate().map(curve).collect();
-        Ok(Value::list(curves?))
+            other => fault(other, &FairNet::<T>::PLACES),
+        }
     }
 }
 
@@ -491,7 +567,7 @@ fn through<T: Real>(
     degree: usize,
     points: &[Vec3<T>],
     at: &[T],
-    (breaks, runs): &(Vec<usize>, Vec<[usize; 2]>),
+    (breaks, runs): (&[usize], &[[usize; 2]]),
     closed: bool,
 ) -> Result<SplineWithKnotDerivatives<T>, FairError> {
     let real: Vec<f64> = at.iter().map(|t| t.re()).collect();

@@ -2,13 +2,15 @@
 
 use super::figures::FairFigures;
 use super::options::shared_options;
-use super::surface::{PointGrid, Rims, fitted, lines, turned};
-use super::{ArgumentFields, PointRole, fault, measure, role};
+use super::surface::{PointGrid, Rims, counts, enough, fitted_net, is_fit, lines, net_surface};
+use super::{ArgumentFields, fault, measure};
 use crate::curve::request::ACCURACY;
-use crate::{Bound, EndContinuity, FairError, Limit, Network, PatchNet, Seam, Space, are_exact};
+use crate::{
+    Bound, EndContinuity, FairError, Limit, Measure, Motion, Network, Optimum, PatchNet, Seam,
+    Space, are_exact,
+};
 use moldloft_num::{Real, Vec3};
-use moldloft_registry::{ArrayShape, Build, CallError, Class, Context, Kind, SurfaceRef, Value};
-use moldloft_spline::BSplineSurface;
+use moldloft_registry::{Build, CallError, Class, Context, Kind, Value};
 use std::sync::Arc;
 
 /// Move by rounding, relative to the size.
@@ -80,17 +82,46 @@ shared_options! {
 
 impl<T: Real> Build<T> for FairPatches<T> {
     fn build(self, _: &Context) -> Result<Value<T>, CallError> {
-        let measure = measure(&self.measure, Self::MEASURE)?;
-        let fit = match role(&self.r#as, Self::AS)? {
-            PointRole::Fit => true,
-            PointRole::Control => false,
-            PointRole::Points => {
-                return Err(CallError::new("unknown-name", "surfaces have no role \"points\"")
-                    .expected("\"fit\" or \"control\"")
-                    .found("\"points\"")
-                    .in_field(Self::AS));
-            }
+        let task = self.task()?;
+        let (faired, best) = task.fair().map_err(Self::unmade)?;
+        let surface = |(sheet, points): (&PatchNet, Vec<Vec3<T>>)| {
+            let figures = FairFigures::of_net(super::moves(&points, &sheet.points), best.as_ref());
+            net_surface(&sheet.spaces, points, None, figures, Self::SURFACES)
         };
+        let surfaces: Result<Vec<_>, CallError> =
+            task.sheets.iter().zip(faired).map(surface).collect();
+        Ok(Value::list(surfaces?))
+    }
+}
+
+/// Control nets of surfaces with their seams, before fairing.
+struct PatchTask<T> {
+    sheets: Vec<PatchNet>,
+    seams: Vec<Seam>,
+    /// Control points of all surfaces.
+    given: Vec<Vec3<T>>,
+    tolerance: T,
+    /// True if the surfaces move only as far as the continuity requires.
+    exact: bool,
+    measure: Measure,
+    bound: Bound,
+}
+
+/// The control points of each surface, and the optimum, if one was solved for.
+type FairedSheets<T> = (Vec<Vec<Vec3<T>>>, Option<Optimum>);
+
+impl<T: Real> FairPatches<T> {
+    const PLACES: ArgumentFields = ArgumentFields {
+        points: Self::SURFACES,
+        tolerance: Self::TOLERANCE,
+        degree: Self::DEGREE,
+        breaks: Self::SURFACES,
+    };
+
+    /// Checks the arguments, and finds the control nets and the seams.
+    fn task(&self) -> Result<PatchTask<T>, CallError> {
+        let measure = measure(&self.measure, Self::MEASURE)?;
+        let fit = is_fit(&self.r#as, Self::AS)?;
         let keeps = match &*self.seams {
             "position" => EndContinuity::Position,
             "tangent" => EndContinuity::Tangent,
@@ -100,62 +131,24 @@ impl<T: Real> Build<T> for FairPatches<T> {
                 return Err(super::unknown("way to keep a seam", word, &known, Self::SEAMS));
             }
         };
-        let Rims([south, east, north, west]) = self.rims;
-        let places = ArgumentFields {
-            points: Self::SURFACES,
-            tolerance: Self::TOLERANCE,
-            degree: Self::DEGREE,
-            breaks: Self::SURFACES,
-        };
-        let degrees = [self.degree, self.degree_v.unwrap_or(self.degree)];
         let motion =
             super::motion(self.along, self.motion.as_deref(), [Self::ALONG, Self::MOTION])?;
-        let bound = match &*self.bound {
-            "points" => Bound::ControlPoints,
-            "curve" => Bound::Bezier,
-            word => {
-                return Err(super::unknown("bound", word, &["points", "curve"], Self::BOUND));
-            }
-        };
+        let bound = super::bound_of_points(&self.bound, Self::BOUND)?;
         let near = match &*self.goal {
             "near" => true,
             "fairest" => false,
             word => return Err(super::unknown("goal", word, &["near", "fairest"], Self::GOAL)),
         };
         let mut exact = near && self.tolerance.re() > 0.0;
-        let mut sheets = Vec::new();
-        let mut given: Vec<Vec3<T>> = Vec::new();
+        let (mut sheets, mut given) = (Vec::new(), Vec::new());
         for (k, PointGrid(grid)) in self.surfaces.iter().enumerate() {
-            let ArrayShape::Grid(m, n) = grid.shape else {
-                return Err(CallError::new("wrong-shape", "a surface needs a grid of points")
-                    .expected("a grid [m, n] of vectors")
-                    .found(format!("a row {}", grid.shape))
-                    .in_item(k)
-                    .in_field(Self::SURFACES));
-            };
-            let made = || -> Result<(PatchNet, Vec<Vec3<T>>), FairError> {
-                let few = [m, n].into_iter().zip(degrees).find(|&(c, degree)| c < degree + 2);
-                if let Some((actual, degree)) = few {
-                    return Err(FairError::TooFew { expected: degree + 2, actual });
-                }
-                let (spaces, net) = if fit {
-                    let (u, net, _) = fitted(degrees[0], &grid.points(), m, &[])?;
-                    let (v, net, _) = fitted(degrees[1], &turned(&net, u.count()), n, &[])?;
-                    let net = turned(&net, v.count());
-                    ([u, v], net)
-                } else {
-                    let spaces = [Space::clamped(degrees[0], m)?, Space::clamped(degrees[1], n)?];
-                    (spaces, grid.points())
-                };
-                let limit = Limit::new(motion, vec![self.tolerance.re(); net.len()])?;
-                let plain = net.iter().map(|p| p.re()).collect();
-                let mut sheet = PatchNet::new(spaces, plain, limit);
-                sheet.rims = [[west, east], [south, north]];
-                Ok((sheet, net))
-            };
-            let (sheet, net) = made().map_err(|e| fault(e, &places).in_item(k))?;
-            let plain: Vec<Vec3<f64>> = grid.points().iter().map(|p| p.re()).collect();
-            exact = exact && are_exact(&plain, &lines([m, n], [false; 2]), &[]);
+            let counts = counts(grid, Self::SURFACES).map_err(|e| e.in_item(k))?;
+            let points = grid.points();
+            let (sheet, net) = self
+                .sheet(&points, counts, fit, motion)
+                .map_err(|e| fault(e, &Self::PLACES).in_item(k))?;
+            let plain: Vec<Vec3<f64>> = points.iter().map(|p| p.re()).collect();
+            exact = exact && are_exact(&plain, &lines(counts, [false; 2]), &[]);
             sheets.push(sheet);
             given.extend(net);
         }
@@ -167,25 +160,35 @@ impl<T: Real> Build<T> for FairPatches<T> {
                 sheets[seam.sheets[k]].rims[edge.direction][edge.end] = EndContinuity::Free;
             }
         }
-        type Made<T> = (Vec<Vec<Vec3<T>>>, Option<crate::Optimum>);
-        let solve = |tolerance: T| -> Result<Made<T>, FairError> {
-            let mut sheets = sheets.clone();
-            for sheet in &mut sheets {
-                sheet.limit.radii.fill(tolerance.re());
-            }
-            let network = Network::joined(&sheets, &seams)?;
-            let points = network.gathered(&given);
-            let tolerances = vec![tolerance; points.len()];
-            let (faired, best) = if tolerance.re() == 0.0 {
-                (points, None)
-            } else {
-                let (points, best) =
-                    network.optimum_with(measure, bound, ACCURACY, &points, &tolerances)?;
-                (points, Some(best))
-            };
-            Ok(((0..sheets.len()).map(|k| network.sheet(k, &faired)).collect(), best))
+        Ok(PatchTask { sheets, seams, given, tolerance: self.tolerance, exact, measure, bound })
+    }
+
+    /// The control net of a grid of points.
+    fn sheet(
+        &self,
+        points: &[Vec3<T>],
+        counts: [usize; 2],
+        fit: bool,
+        motion: Motion,
+    ) -> Result<(PatchNet, Vec<Vec3<T>>), FairError> {
+        let degrees = [self.degree, self.degree_v.unwrap_or(self.degree)];
+        enough(counts, degrees)?;
+        let (spaces, net) = if fit {
+            let (spaces, net, _) = fitted_net(degrees, points, counts[0], &Default::default())?;
+            (spaces, net)
+        } else {
+            let space = |d: usize| Space::clamped(degrees[d], counts[d]);
+            ([space(0)?, space(1)?], points.to_vec())
         };
-        let contradicted = |e: FairError| match e {
+        let limit = Limit::new(motion, vec![self.tolerance.re(); net.len()])?;
+        let mut sheet = PatchNet::new(spaces, net.iter().map(|p| p.re()).collect(), limit);
+        sheet.rims = self.rims.sides();
+        Ok((sheet, net))
+    }
+
+    /// Converts an error of the fairing to one at its argument.
+    fn unmade(error: FairError) -> CallError {
+        match error {
             FairError::Contradiction { miss, .. } => {
                 let text = format!(
                     "the surfaces cannot be continuous across their seams within the tolerance \
@@ -195,31 +198,45 @@ impl<T: Real> Build<T> for FairPatches<T> {
                     .expected("a larger tolerance, or surfaces that join more smoothly")
                     .in_field(Self::SEAMS)
             }
-            FairError::TurnsBack => CallError::new("turns-back", e.to_string())
+            FairError::TurnsBack => CallError::new("turns-back", error.to_string())
                 .expected("surfaces that continue their neighbours")
                 .in_field(Self::SURFACES),
-            e => fault(e, &places),
-        };
-        // Exact surfaces: the smallest tolerance, in powers of 8, that admits the continuity.
-        let size = given.iter().map(|p| p.re().norm()).fold(0.0, f64::max);
+            other => fault(other, &Self::PLACES),
+        }
+    }
+}
+
+impl<T: Real> PatchTask<T> {
+    /// The faired surfaces. Exact surfaces have the smallest tolerance, in powers of 8, that admits
+    /// the continuity.
+    fn fair(&self) -> Result<FairedSheets<T>, FairError> {
+        let size = self.given.iter().map(|p| p.re().norm()).fold(0.0, f64::max);
         let tries = (0..16).map(|k| ROUNDING * size * f64::powi(8.0, k));
-        let smaller = tries.filter(|&t| exact && t < self.tolerance.re());
-        let found = smaller
-            .map(|t| solve(T::from(t)))
-            .find(|made| !matches!(made, Err(FairError::Contradiction { .. })));
-        let (faired, best) =
-            found.unwrap_or_else(|| solve(self.tolerance)).map_err(contradicted)?;
-        let surface = |(sheet, points): (&PatchNet, &Vec<Vec3<T>>)| {
-            let [u, v] = sheet.spaces.each_ref().map(|s| s.knot_vector().0);
-            let surface = BSplineSurface::new(u, v, points.clone(), None)
-                .map_err(|e| CallError::new("no-spline", e.to_string()).in_field(Self::SURFACES))?;
-            let made = best.as_ref().map(|b| (&b.certificate, Some(b.active), None));
-            let own = FairFigures::of_moves(super::moves(points, &sheet.points), made);
-            let surface = SurfaceRef::new(surface, 0);
-            Ok(Value::Surface(surface.with_figures(&own.members_of_moves())))
+        tries
+            .filter(|&t| self.exact && t < self.tolerance.re())
+            .map(|t| self.within(T::from(t)))
+            .find(|made| !matches!(made, Err(FairError::Contradiction { .. })))
+            .unwrap_or_else(|| self.within(self.tolerance))
+    }
+
+    /// The fairest surfaces within a tolerance.
+    fn within(&self, tolerance: T) -> Result<FairedSheets<T>, FairError> {
+        let mut sheets = self.sheets.clone();
+        for sheet in &mut sheets {
+            sheet.limit.radii.fill(tolerance.re());
+        }
+        let network = Network::joined(&sheets, &self.seams)?;
+        let points = network.gathered(&self.given);
+        let (faired, best) = if tolerance.re() == 0.0 {
+            (points, None)
+        } else {
+            let tolerances = vec![tolerance; points.len()];
+            let (measure, bound) = (self.measure, self.bound);
+            let (points, best) =
+                network.optimum_with(measure, bound, ACCURACY, &points, &tolerances)?;
+            (points, Some(best))
         };
-        let surfaces: Result<Vec<_>, CallError> = sheets.iter().zip(&faired).map(surface).collect();
-        Ok(Value::list(surfaces?))
+        Ok(((0..sheets.len()).map(|k| network.sheet(k, &faired)).collect(), best))
     }
 }
 

@@ -8,9 +8,9 @@ use super::surface_method::{MethodOptions, SurfaceMethod};
 use super::{ArgumentFields, GivenKnots, PointRole, fault, indices, measure, role};
 use crate::curve::request::ACCURACY;
 use crate::{
-    EndContinuity, FairError, GridData, InterpolationSpace, Limit, MovingGrid, Network, Optimum,
-    ParameterSpacing, Space, are_exact, fair_grid, fair_grid_with, grid_parameters,
-    interpolate_with_corners, line_findings,
+    EndContinuity, FairError, Goal, GridData, GridFit, InterpolationSpace, Limit, Measure, Motion,
+    MovingGrid, Network, Optimum, ParameterSpacing, Space, are_exact, fair_grid, fair_grid_with,
+    grid_parameters, interpolate_with_corners, line_findings,
 };
 use moldloft_num::{Real, Vec3};
 use moldloft_registry::{
@@ -291,7 +291,15 @@ impl<T: Real> FairSurf<T> {
 }
 
 /// Conditions at the rims, in the order v = 0, u = 1, v = 1, u = 0.
-pub(super) struct Rims(pub [EndContinuity; 4]);
+pub(super) struct Rims([EndContinuity; 4]);
+
+impl Rims {
+    /// Conditions at the start and the end of each direction.
+    pub fn sides(&self) -> [[EndContinuity; 2]; 2] {
+        let Self([south, east, north, west]) = *self;
+        [[west, east], [south, north]]
+    }
+}
 
 impl<T: Real> FromValue<T> for Rims {
     const CLASS: Class = Class::Any;
@@ -323,10 +331,10 @@ impl<T: Real> FromValue<T> for Rims {
 
 /// Control points of the splines through the lines of a grid along its first index: the space, the
 /// points, and the rows that are breaks.
-pub(super) type Along<T> = (Space, Vec<Vec3<T>>, Vec<usize>);
+type Along<T> = (Space, Vec<Vec3<T>>, Vec<usize>);
 
 /// Interpolates all lines of a grid `[m, n]` along its first index.
-pub(super) fn fitted<T: Real>(
+fn fitted<T: Real>(
     degree: usize,
     grid: &[Vec3<T>],
     m: usize,
@@ -362,56 +370,150 @@ pub(super) fn turned<T: Real>(grid: &[Vec3<T>], m: usize) -> Vec<Vec3<T>> {
     (0..n).flat_map(|j| (0..m).map(move |i| grid[i * n + j])).collect()
 }
 
+/// Number of rows and columns of a grid.
+pub(super) fn counts<T: Real>(grid: &Vectors<T>, field: FieldId) -> Result<[usize; 2], CallError> {
+    match grid.shape {
+        ArrayShape::Grid(m, n) => Ok([m, n]),
+        row @ ArrayShape::Row(_) => {
+            Err(CallError::new("wrong-shape", "a surface needs a grid of points")
+                .expected("a grid [m, n] of vectors")
+                .found(format!("a row {row}"))
+                .in_field(field))
+        }
+    }
+}
+
+/// True if the points of a surface are interpolated, false if they are control points.
+pub(super) fn is_fit(word: &str, field: FieldId) -> Result<bool, CallError> {
+    match role(word, field)? {
+        PointRole::Fit => Ok(true),
+        PointRole::Control => Ok(false),
+        PointRole::Points => {
+            Err(CallError::new("unknown-name", "surfaces have no role \"points\"")
+                .expected("\"fit\" or \"control\"")
+                .found("\"points\"")
+                .in_field(field))
+        }
+    }
+}
+
+/// Refuses grids with too few rows or columns for the degrees.
+pub(super) fn enough(counts: [usize; 2], degrees: [usize; 2]) -> Result<(), FairError> {
+    match counts.into_iter().zip(degrees).find(|&(count, degree)| count < degree + 2) {
+        Some((actual, degree)) => Err(FairError::TooFew { expected: degree + 2, actual }),
+        None => Ok(()),
+    }
+}
+
+/// Spaces, control net, and the rows and columns that are breaks.
+pub(super) type FittedNet<T> = ([Space; 2], Vec<Vec3<T>>, [Vec<usize>; 2]);
+
+/// Interpolates a grid of `m` rows.
+pub(super) fn fitted_net<T: Real>(
+    degrees: [usize; 2],
+    grid: &[Vec3<T>],
+    m: usize,
+    breaks: &[Vec<usize>; 2],
+) -> Result<FittedNet<T>, FairError> {
+    let (u, net, rows) = fitted(degrees[0], grid, m, &breaks[0])?;
+    let n = grid.len() / m;
+    let (v, net, columns) = fitted(degrees[1], &turned(&net, u.count()), n, &breaks[1])?;
+    let net = turned(&net, v.count());
+    Ok(([u, v], net, [rows, columns]))
+}
+
 impl<T: Real> Build<T> for FairSurf<T> {
     fn build(self, _: &Context) -> Result<Value<T>, CallError> {
+        let task = self.task()?;
+        let mut owners = Vec::new();
+        if task.method == SurfaceMethod::NearPoints {
+            let (surface, figures) = task
+                .near_points(&mut owners)
+                .and_then(|(made, figures)| {
+                    let surface = MovingSurface::referred(task.degrees, made.knots, made.points)?;
+                    Ok((surface, figures))
+                })
+                .map_err(|e| task.unmade(e, &owners))?;
+            return Ok(Value::Surface(surface.with_figures(&figures.members())));
+        }
+        let (spaces, points, figures) = task.fair_net().map_err(|e| task.unmade(e, &owners))?;
+        let weights = task.weights.map(|w| w.into_iter().map(T::from).collect());
+        net_surface(&spaces, points, weights, figures, Self::POINTS)
+    }
+}
+
+/// The surface of a faired control net; `field` is the argument with the points.
+pub(super) fn net_surface<T: Real>(
+    spaces: &[Space; 2],
+    points: Vec<Vec3<T>>,
+    weights: Option<Vec<T>>,
+    figures: FairFigures,
+    field: FieldId,
+) -> Result<Value<T>, CallError> {
+    let [u, v] = spaces.each_ref().map(|s| s.knot_vector().0);
+    let surface = BSplineSurface::new(u, v, points, weights)
+        .map_err(|e| CallError::new("no-spline", e.to_string()).in_field(field))?;
+    let surface = SurfaceRef::new(surface, 0);
+    Ok(Value::Surface(surface.with_figures(&figures.members_of_moves())))
+}
+
+/// Checked arguments of a surface.
+struct SurfaceTask<'a, T: Real> {
+    given: &'a FairSurf<T>,
+    points: Vec<Vec3<T>>,
+    counts: [usize; 2],
+    degrees: [usize; 2],
+    closed: [bool; 2],
+    /// True if the points are interpolated, false if they are control points.
+    fitted: bool,
+    /// Indices of the breaks along u and v.
+    marks: [Vec<usize>; 2],
+    own: [GivenKnots; 2],
+    measure: Measure,
+    goal: Goal,
+    motion: Motion,
+    spacing: ParameterSpacing,
+    tolerances: Vec<T>,
+    weights: Option<Vec<f64>>,
+    demands: SurfaceDemands,
+    method: SurfaceMethod,
+}
+
+impl<T: Real> FairSurf<T> {
+    const PLACES: ArgumentFields = ArgumentFields {
+        points: Self::POINTS,
+        tolerance: Self::TOLERANCE,
+        degree: Self::DEGREE,
+        breaks: Self::BREAKS_U,
+    };
+
+    /// Checks the arguments.
+    fn task(&self) -> Result<SurfaceTask<'_, T>, CallError> {
         let PointGrid(grid) = &self.points;
-        let ArrayShape::Grid(m, n) = grid.shape else {
-            return Err(CallError::new("wrong-shape", "a surface needs a grid of points")
-                .expected("a grid [m, n] of vectors")
-                .found(format!("a row {}", grid.shape))
-                .in_field(Self::POINTS));
-        };
+        let counts = counts(grid, Self::POINTS)?;
         let measure = measure(&self.measure, Self::MEASURE)?;
-        let fitted_first = match role(&self.r#as, Self::AS)? {
-            PointRole::Fit => true,
-            PointRole::Control => false,
-            PointRole::Points => {
-                return Err(CallError::new("unknown-name", "surfaces have no role \"points\"")
-                    .expected("\"fit\" or \"control\"")
-                    .found("\"points\"")
-                    .in_field(Self::AS));
-            }
+        let fitted = is_fit(&self.r#as, Self::AS)?;
+        let marks = |given: &Option<Vec<usize>>, count, breaks| {
+            indices(given.as_deref().unwrap_or_default(), count)
+                .map_err(|e| fault(e, &ArgumentFields { breaks, ..Self::PLACES }))
         };
-        let places = ArgumentFields {
-            points: Self::POINTS,
-            tolerance: Self::TOLERANCE,
-            degree: Self::DEGREE,
-            breaks: Self::BREAKS_U,
-        };
-        let along_v = ArgumentFields { breaks: Self::BREAKS_V, ..places };
-        let [marks_u, marks_v] = [(&self.breaks_u, m, &places), (&self.breaks_v, n, &along_v)].map(
-            |(breaks, count, places)| {
-                let numbers = breaks.as_deref().unwrap_or_default();
-                indices(numbers, count).map_err(|e| fault(e, places))
-            },
-        );
-        let (marks_u, marks_v) = (marks_u?, marks_v?);
+        let marks = [
+            marks(&self.breaks_u, counts[0], Self::BREAKS_U)?,
+            marks(&self.breaks_v, counts[1], Self::BREAKS_V)?,
+        ];
         let own = self.own(grid.shape)?;
         let motion =
             super::motion(self.along, self.motion.as_deref(), [Self::ALONG, Self::MOTION])?;
         let spacing = super::plain_spacing(&self.spacing, Self::SPACING)?;
         constant("share", SHARE, self.share.into_iter())?;
-        let goal =
-            super::goal_of(&self.goal, self.share.map(|s| s.re()), super::BUDGET, [GOAL, SHARE])?;
-        let degrees = [self.degree, self.degree_v.unwrap_or(self.degree)];
-        let closed = [self.closed_u == 1, self.closed_v == 1];
-        let tolerances = self.tolerances_of(grid.shape, m * n)?;
+        let share = self.share.map(|s| s.re());
+        let goal = super::goal_of(&self.goal, share, super::BUDGET, [GOAL, SHARE])?;
+        let tolerances = self.tolerances_of(grid.shape, counts[0] * counts[1])?;
         let demands = self.demands()?;
-        let method = self.method(fitted_first && !matches!(spacing, ParameterSpacing::Uniform))?;
-        let by_data = method == SurfaceMethod::NearPoints;
-        let weights: Option<Vec<f64>> =
-            self.weights.as_ref().map(|w| w.items.iter().map(|x| x.re()).collect());
-        if let Some((what, field)) = self.near_only().filter(|_| !by_data) {
+        let method = self.method(fitted && !matches!(spacing, ParameterSpacing::Uniform))?;
+        if method != SurfaceMethod::NearPoints
+            && let Some((what, field)) = self.near_only()
+        {
             let message = format!("`{what}` is for surfaces near their points");
             return Err(CallError::new("not-near", message)
                 .expected(
@@ -419,174 +521,203 @@ impl<T: Real> Build<T> for FairSurf<T> {
                 )
                 .in_field(field));
         }
-        let Rims([south, east, north, west]) = self.rims;
-        let rims = [[west, east], [south, north]];
-        let lines = lines([m, n], closed);
-        let of_breaks: Vec<usize> = (0..m * n)
-            .filter(|k| marks_u.contains(&(k / n)) || marks_v.contains(&(k % n)))
-            .collect();
-        let make = || -> Result<_, FairError> {
-            for (actual, degree) in [m, n].into_iter().zip(degrees) {
-                if actual < degree + 2 {
-                    return Err(FairError::TooFew { expected: degree + 2, actual });
+        Ok(SurfaceTask {
+            given: self,
+            points: grid.points(),
+            counts,
+            degrees: [self.degree, self.degree_v.unwrap_or(self.degree)],
+            closed: [self.closed_u == 1, self.closed_v == 1],
+            fitted,
+            marks,
+            own,
+            measure,
+            goal,
+            motion,
+            spacing,
+            tolerances,
+            weights: self.weights.as_ref().map(|w| w.items.iter().map(|x| x.re()).collect()),
+            demands,
+            method,
+        })
+    }
+}
+
+impl<T: Real> SurfaceTask<'_, T> {
+    /// The points without derivatives, the lines of the grid, and the points on breaks.
+    fn lines(&self) -> (Vec<Vec3<f64>>, Vec<(Vec<usize>, bool)>, Vec<usize>) {
+        let n = self.counts[1];
+        let on_break =
+            |k: &usize| self.marks[0].contains(&(k / n)) || self.marks[1].contains(&(k % n));
+        let plain = self.points.iter().map(|p| p.re()).collect();
+        let breaks = (0..self.points.len()).filter(on_break).collect();
+        (plain, lines(self.counts, self.closed), breaks)
+    }
+
+    /// The control net before fairing, and its rows and columns that are breaks.
+    fn net(&self) -> Result<FittedNet<T>, FairError> {
+        enough(self.counts, self.degrees)?;
+        if self.fitted {
+            return fitted_net(self.degrees, &self.points, self.counts[0], &self.marks);
+        }
+        let space = |d: usize| self.own[d].space(self.degrees[d], self.counts[d]);
+        Ok(([space(0)?, space(1)?], self.points.clone(), self.marks.clone()))
+    }
+
+    /// The faired control net.
+    fn fair_net(&self) -> Result<([Space; 2], Vec<Vec3<T>>, FairFigures), FairError> {
+        let (spaces, net, marks) = self.net()?;
+        let (plain, lines, breaks) = self.lines();
+        let still = self.weights.is_none() && matches!(self.goal, Goal::Near(_));
+        if still && are_exact(&plain, &lines, &breaks) {
+            return Ok((spaces, net, FairFigures::of_moves([].into_iter(), None)));
+        }
+        let tolerance = self.given.tolerance;
+        let limit = Limit::new(self.motion, vec![tolerance.re(); net.len()])?;
+        let plain = net.iter().map(|p| p.re()).collect();
+        let mut network = Network::net(spaces.clone(), plain, self.weights.clone(), limit)?
+            .with_breaks(&marks[0], &marks[1])?
+            .with_rims(self.given.rims.sides())?;
+        let tolerances = vec![tolerance; net.len()];
+        let (points, best) = match self.method {
+            SurfaceMethod::Passes { passes, steps, along_v_first } => {
+                if along_v_first {
+                    network.strands.rotate_left(spaces[1].count());
                 }
+                (network.passes_with(passes, steps, &net, &tolerances)?, None)
             }
-            let (spaces, net, marks) = if fitted_first {
-                let (u, net, mu) = fitted(degrees[0], &grid.points(), m, &marks_u)?;
-                let (v, net, mv) = fitted(degrees[1], &turned(&net, u.count()), n, &marks_v)?;
-                let net = turned(&net, v.count());
-                ([u, v], net, [mu, mv])
-            } else {
-                let spaces = [own[0].space(degrees[0], m)?, own[1].space(degrees[1], n)?];
-                (spaces, grid.points(), [marks_u.clone(), marks_v.clone()])
-            };
-            let all: Vec<Vec3<f64>> = grid.points().iter().map(|p| p.re()).collect();
-            let still = weights.is_none() && matches!(goal, crate::Goal::Near(_));
-            if still && are_exact(&all, &lines, &of_breaks) {
-                return Ok((spaces, net, FairFigures::of_moves([].into_iter(), None)));
-            }
-            let limit = Limit::new(motion, vec![self.tolerance.re(); net.len()])?;
-            let plain = net.iter().map(|p| p.re()).collect();
-            let mut network = Network::net(spaces.clone(), plain, weights.clone(), limit)?
-                .with_breaks(&marks[0], &marks[1])?
-                .with_rims(rims)?;
-            let tolerances = vec![self.tolerance; net.len()];
-            let (points, best) = match method {
-                SurfaceMethod::Passes { passes, steps, along_v_first } => {
-                    if along_v_first {
-                        network.strands.rotate_left(spaces[1].count());
-                    }
-                    (network.passes_with(passes, steps, &net, &tolerances)?, None)
-                }
-                SurfaceMethod::Sweeps(count) => {
-                    let mut numbers = net.iter().flat_map(|p| p.to_array()).chain([self.tolerance]);
-                    if !numbers.all(|x| x.is_constant()) {
-                        return Err(FairError::NoDerivative(
-                            "no derivatives are available for sweeps: use the optimum",
-                        ));
-                    }
-                    let (points, certificate) = network.sweeps(measure, count)?;
-                    let best = Optimum { points, certificate, iterations: count, active: 0 };
-                    (best.points.iter().map(|&p| Vec3::lifted(p)).collect(), Some(best))
-                }
-                SurfaceMethod::Joint(bound) => {
-                    let (points, best) =
-                        network.optimum_with(measure, bound, ACCURACY, &net, &tolerances)?;
-                    (points, Some(best))
-                }
-                SurfaceMethod::NearPoints => unreachable!("made from its points"),
-            };
-            let made = best.as_ref().map(|b| (&b.certificate, Some(b.active), None));
-            let figures = FairFigures::of_moves(super::moves(&points, &net), made);
-            Ok((spaces, points, figures))
-        };
-        let owners = std::cell::RefCell::new(Vec::new());
-        let by_points = || -> Result<_, FairError> {
-            let points = grid.points();
-            let plain: Vec<Vec3<f64>> = points.iter().map(|p| p.re()).collect();
-            for d in [0, 1] {
-                let expected = degrees[d] + 2 + if closed[d] { degrees[d] } else { 0 };
-                let actual = [m, n][d];
-                if actual < expected {
-                    return Err(FairError::TooFew { expected, actual });
-                }
-            }
-            let limit = Limit::new(motion, tolerances.iter().map(|t| t.re()).collect())?;
-            let allowed = (motion, limit.radii.as_slice());
-            let at = grid_parameters(&points, [m, n], [spacing; 2], closed, allowed)?;
-            let layout = |d: usize, marks: &[usize]| {
-                let real: Vec<f64> = at[d].iter().map(|t| t.re()).collect();
-                InterpolationSpace::new(degrees[d], &real, marks, closed[d])
-            };
-            let data = GridData {
-                limit,
-                layouts: [layout(0, &marks_u)?, layout(1, &marks_v)?],
-                rims,
-                points: plain,
-            };
-            let at = [at[0].as_slice(), at[1].as_slice()];
-            let (made, fit) = if demands.is_empty() {
-                fair_grid_with(&data, measure, goal, ACCURACY, &points, &tolerances, at)?
-            } else {
-                let mut numbers = points
-                    .iter()
-                    .flat_map(|p| p.to_array())
-                    .chain(at.iter().flat_map(|a| a.iter().copied()))
-                    .chain(tolerances.iter().copied());
+            SurfaceMethod::Sweeps(count) => {
+                let mut numbers = net.iter().flat_map(|p| p.to_array()).chain([tolerance]);
                 if !numbers.all(|x| x.is_constant()) {
                     return Err(FairError::NoDerivative(
-                        "no derivatives are available for surfaces with conditions: remove the \
-                        conditions",
+                        "no derivatives are available for sweeps: use the optimum",
                     ));
                 }
-                let (conditions, whose) = demands.conditions(&data)?;
-                *owners.borrow_mut() = whose;
-                let fit = fair_grid(&data, measure, goal, &conditions, 1e-9)?;
-                let knots =
-                    |d: usize| data.layouts[d].space.knots().iter().map(|&k| T::from(k)).collect();
-                let points = fit.points.iter().map(|&p| Vec3::lifted(p)).collect();
-                (MovingGrid { points, knots: [knots(0), knots(1)] }, fit)
-            };
-            let findings = line_findings(&data.points, &lines, &of_breaks);
-            let figures = FairFigures::of_surface(&fit, &data.limit.radii, findings.len());
-            // Outside, a closed direction is an open one that repeats its first points.
-            let spaces = data.layouts.each_ref().map(|layout| &layout.space);
-            let along = |d: usize, net: &[Vec3<T>], count: usize| {
-                let across = net.len() / count;
-                let mut out = Vec::new();
-                let mut open = Vec::new();
-                for k in 0..across {
-                    let line: Vec<Vec3<T>> = (0..count).map(|i| net[i * across + k]).collect();
-                    let (knots, line) = spaces[d].open_form(&made.knots[d], &line);
-                    out.resize(line.len() * across, Vec3::zero());
-                    for (i, p) in line.into_iter().enumerate() {
-                        out[i * across + k] = p;
-                    }
-                    open = knots;
-                }
-                (open, out)
-            };
-            let counts = spaces.map(|space| space.count());
-            let (u, net) = along(0, &made.points, counts[0]);
-            let (v, net) = along(1, &turned(&net, net.len() / counts[1]), counts[1]);
-            let net = turned(&net, v.len() - degrees[1] - 1);
-            Ok((MovingGrid { points: net, knots: [u, v] }, figures))
+                let (points, certificate) = network.sweeps(self.measure, count)?;
+                let best = Optimum { points, certificate, iterations: count, active: 0 };
+                (best.points.iter().map(|&p| Vec3::lifted(p)).collect(), Some(best))
+            }
+            SurfaceMethod::Joint(bound) => {
+                let (points, best) =
+                    network.optimum_with(self.measure, bound, ACCURACY, &net, &tolerances)?;
+                (points, Some(best))
+            }
+            SurfaceMethod::NearPoints => unreachable!("made from its points"),
         };
-        let about = |e: FairError| match e {
+        let figures = FairFigures::of_net(super::moves(&points, &net), best.as_ref());
+        Ok((spaces, points, figures))
+    }
+
+    /// The fair surface near the points. `owners` receives the argument of each condition.
+    fn near_points(
+        &self,
+        owners: &mut Vec<usize>,
+    ) -> Result<(MovingGrid<T>, FairFigures), FairError> {
+        let (degrees, closed) = (self.degrees, self.closed);
+        for d in [0, 1] {
+            let expected = degrees[d] + 2 + if closed[d] { degrees[d] } else { 0 };
+            let actual = self.counts[d];
+            if actual < expected {
+                return Err(FairError::TooFew { expected, actual });
+            }
+        }
+        let limit = Limit::new(self.motion, self.tolerances.iter().map(|t| t.re()).collect())?;
+        let allowed = (self.motion, limit.radii.as_slice());
+        let at = grid_parameters(&self.points, self.counts, [self.spacing; 2], closed, allowed)?;
+        let layout = |d: usize| {
+            let real: Vec<f64> = at[d].iter().map(|t| t.re()).collect();
+            InterpolationSpace::new(degrees[d], &real, &self.marks[d], closed[d])
+        };
+        let layouts = [layout(0)?, layout(1)?];
+        let (points, lines, breaks) = self.lines();
+        let data = GridData { limit, layouts, rims: self.given.rims.sides(), points };
+        let at = [at[0].as_slice(), at[1].as_slice()];
+        let (made, fit) = if self.demands.is_empty() {
+            let (points, tolerances) = (&self.points, &self.tolerances);
+            fair_grid_with(&data, self.measure, self.goal, ACCURACY, points, tolerances, at)?
+        } else {
+            self.conditioned(&data, at, owners)?
+        };
+        let findings = line_findings(&data.points, &lines, &breaks);
+        let figures = FairFigures::of_surface(&fit, &data.limit.radii, findings.len());
+        Ok((opened(&data.layouts, &made), figures))
+    }
+
+    /// The fair surface near the points that meets the conditions.
+    fn conditioned(
+        &self,
+        data: &GridData,
+        at: [&[T]; 2],
+        owners: &mut Vec<usize>,
+    ) -> Result<(MovingGrid<T>, GridFit), FairError> {
+        let mut numbers = self
+            .points
+            .iter()
+            .flat_map(|p| p.to_array())
+            .chain(at.iter().flat_map(|a| a.iter().copied()))
+            .chain(self.tolerances.iter().copied());
+        if !numbers.all(|x| x.is_constant()) {
+            return Err(FairError::NoDerivative(
+                "no derivatives are available for surfaces with conditions: remove the conditions",
+            ));
+        }
+        let (conditions, whose) = self.demands.conditions(data)?;
+        *owners = whose;
+        let fit = fair_grid(data, self.measure, self.goal, &conditions, 1e-9)?;
+        let knots = |d: usize| data.layouts[d].space.knots().iter().map(|&k| T::from(k)).collect();
+        let points = fit.points.iter().map(|&p| Vec3::lifted(p)).collect();
+        Ok((MovingGrid { points, knots: [knots(0), knots(1)] }, fit))
+    }
+
+    /// Converts an error to one at its argument.
+    fn unmade(&self, error: FairError, owners: &[usize]) -> CallError {
+        match error {
             FairError::Weight { .. } => {
-                CallError::new("bad-weight", e.to_string()).in_field(WEIGHTS)
+                CallError::new("bad-weight", error.to_string()).in_field(WEIGHTS)
             }
             FairError::Unsorted { .. }
             | FairError::Knots(_)
             | FairError::Count { what: "knots", .. } => {
-                let along = usize::from(own[0].space(degrees[0], m).is_ok());
-                CallError::new("bad-knots", e.to_string()).in_field(KNOTS[along])
+                let along = usize::from(self.own[0].space(self.degrees[0], self.counts[0]).is_ok());
+                CallError::new("bad-knots", error.to_string()).in_field(KNOTS[along])
             }
-            FairError::Degree { expected, actual } if actual != degrees[0] => {
-                CallError::new("out-of-range", e.to_string())
+            FairError::Degree { expected, actual } if actual != self.degrees[0] => {
+                CallError::new("out-of-range", error.to_string())
                     .expected(format!("degree {expected} or more for this measure"))
                     .found(actual.to_string())
-                    .in_field(Self::DEGREE_V)
+                    .in_field(FairSurf::<T>::DEGREE_V)
             }
             FairError::Goal(why) => CallError::new("no-goal", why).in_field(GOAL),
-            FairError::Energy { .. } => CallError::new("no-goal", e.to_string()).in_field(SHARE),
-            FairError::Contradiction { conditions, miss, .. } if !demands.is_empty() => {
-                demands.refused(&conditions, &owners.borrow(), miss)
+            FairError::Energy { .. } => {
+                CallError::new("no-goal", error.to_string()).in_field(SHARE)
             }
-            e => fault(e, &places),
-        };
-        if by_data {
-            let (made, figures) = by_points().map_err(about)?;
-            let surface =
-                MovingSurface::referred(degrees, made.knots, made.points).map_err(about)?;
-            return Ok(Value::Surface(surface.with_figures(&figures.members())));
+            FairError::Contradiction { conditions, miss, .. } if !self.demands.is_empty() => {
+                self.demands.refused(&conditions, owners, miss)
+            }
+            other => fault(other, &FairSurf::<T>::PLACES),
         }
-        let (spaces, points, figures) = make().map_err(about)?;
-        let [u, v] = spaces.map(|s| s.knot_vector().0);
-        let weights = weights.map(|w| w.into_iter().map(T::from).collect());
-        let surface = BSplineSurface::new(u, v, points, weights)
-            .map_err(|e| CallError::new("no-spline", e.to_string()).in_field(Self::POINTS))?;
-        let surface = SurfaceRef::new(surface, 0);
-        Ok(Value::Surface(surface.with_figures(&figures.members_of_moves())))
     }
+}
+
+/// A surface in the form whose closed directions are open ones that repeat their first points.
+fn opened<T: Real>(layouts: &[InterpolationSpace; 2], made: &MovingGrid<T>) -> MovingGrid<T> {
+    let along = |d: usize, net: &[Vec3<T>]| {
+        let space = &layouts[d].space;
+        let count = space.count();
+        let across = net.len() / count;
+        let (mut out, mut open) = (Vec::new(), Vec::new());
+        for k in 0..across {
+            let line: Vec<Vec3<T>> = (0..count).map(|i| net[i * across + k]).collect();
+            let (knots, line) = space.open_form(&made.knots[d], &line);
+            out.resize(line.len() * across, Vec3::zero());
+            for (i, p) in line.into_iter().enumerate() {
+                out[i * across + k] = p;
+            }
+            open = knots;
+        }
+        (open, out)
+    };
+    let (u, net) = along(0, &made.points);
+    let (v, net) = along(1, &turned(&net, net.len() / layouts[1].space.count()));
+    let points = turned(&net, v.len() - layouts[1].space.degree() - 1);
+    MovingGrid { points, knots: [u, v] }
 }

@@ -10,7 +10,7 @@
 //! from 0 to 1, hence by the measure of a curve of unit length.
 
 use crate::curve::exact::{all_exact, between_breaks};
-use crate::curve::moving::{MapReal, MovingRows, MovingSpace};
+use crate::curve::moving::{MovingRows, MovingSites, MovingSpace};
 use crate::optimum::goal::{
     Adaptation, Goal, GoalOptimum, GoalVariation, RegularizationPath, check_decided, check_single,
     check_unique, moved, rounding, tightened,
@@ -613,7 +613,6 @@ pub fn fair_grid_with<T: Real>(
     let pulling = data.pulling(&parts);
     let pull = data.pull(&pulling);
     let found = data.found(goal, false, &mut parts, &pull)?;
-    let (share, weight) = (found.share, found.weight);
     let [u, v] = &data.layouts;
     let ((su, ku), (sv, kv)) = (u.moving(at[0]), v.moving(at[1]));
     let mut plain =
@@ -627,30 +626,16 @@ pub fn fair_grid_with<T: Real>(
     }
     let spaces =
         [MovingSpace { space: &u.space, knots: &ku }, MovingSpace { space: &v.space, knots: &kv }];
-    let nv = v.space.count();
     let bases = [
         su.iter().map(|&t| spaces[0].value(t)).collect::<Vec<_>>(),
         sv.iter().map(|&t| spaces[1].value(t)).collect::<Vec<_>>(),
     ];
-    let values = products(&bases[0], &bases[1], nv);
     let wanted = GridData::both(points, data.columns(), |d, line| {
         Ok(data.layouts[d].moving_data(line, at[d], [&su, &sv][d]))
     })?;
-    // By how much control points must change so that the surface of `of` follows the data at the
-    // sites while knots and sites move.
-    let through = |of: &[Vec3<f64>], real: &[Vec3<f64>]| -> Result<Vec<Vec3<T>>, FairError> {
-        let lifted: Vec<Vec3<T>> = of.iter().map(|&p| Vec3::lifted(p)).collect();
-        let change: Vec<Vec3<T>> = (0..wanted.len())
-            .map(|k| {
-                let off = wanted[k] - values.apply(k, &lifted);
-                off - Vec3::lifted(off.re())
-            })
-            .collect();
-        let change = data.through(&change)?;
-        Ok(real.iter().zip(change).map(|(&p, c)| Vec3::lifted(p) + c).collect())
-    };
-    let start = through(&original, &original)?;
-    if share == 0.0 {
+    let sites = MovingSites { values: products(&bases[0], &bases[1], v.space.count()), wanted };
+    let start = sites.through(&original, &original, |values| data.through(values))?;
+    if found.share == 0.0 {
         drop(parts);
         let grid = MovingGrid { points: start, knots: [ku, kv] };
         return Ok((grid, data.fit(found, original, before)));
@@ -665,92 +650,158 @@ pub fn fair_grid_with<T: Real>(
             measure",
         ));
     }
-    // The measure's rows as knots, sites and weights move.
-    let scaled = |rows: &[Vec<(usize, T)>], by: &[T]| -> Vec<Vec<(usize, T)>> {
-        let one = |(row, w): (&Vec<(usize, T)>, &T)| {
-            let root = w.sqrt();
-            row.iter().map(|&(c, x)| (c, x * root)).collect()
-        };
-        rows.iter().zip(by).map(one).collect()
+    let rows = data.moving_measure(measure, &spaces, [&su, &sv], &bases)?;
+    let (limited, limits) = data.moving_limits(&parts, tolerances);
+    let moving = MovingGridData {
+        data,
+        original: &original,
+        sites,
+        start,
+        rows,
+        pulling: &pulling,
+        limited,
+        limits,
+        tolerances,
     };
-    let times = |rows: MovingRows<T>, by: f64| -> Vec<Vec<(usize, T)>> {
-        rows.rows.into_iter().map(|r| r.into_iter().map(|(c, x)| (c, x * by)).collect()).collect()
+    let budget = match goal {
+        Goal::Near(own) if found.between => moving.budget(own, &found, &mut parts, &pull)?,
+        _ => T::zero(),
     };
-    let (wu, wv) = (weights(&su, u.space.is_closed()), weights(&sv, v.space.is_closed()));
-    let mu = times(spaces[0].measure(measure)?, unit(measure, u));
-    let mv = times(spaces[1].measure(measure)?, unit(measure, v));
-    let mut rows = products(&mu, &scaled(&bases[1], &wv), nv);
-    rows.rows.extend(products(&scaled(&bases[0], &wu), &mv, nv).rows);
-    let radii = data.radii();
-    let all = data.rows();
-    let columns = sv.len();
-    let free = |k: &usize| all.row(*k).0.iter().any(|&c| !parts.frozen[c as usize]);
-    let limited: Vec<usize> =
-        (0..radii.len()).filter(|k| radii[*k] > 0.0 && radii[*k].is_finite() && free(k)).collect();
-    let largest = tolerances.iter().copied().reduce(|a, b| if b.re() > a.re() { b } else { a });
-    let largest = largest.unwrap_or_else(T::zero);
-    let of = |k: &usize| data.owner(k / columns, k % columns).map_or(largest, |i| tolerances[i]);
-    let own: Vec<T> = limited.iter().map(of).collect();
-    // Changes of a solution, where data pull with a weight.
-    let moving = |solved: &Solved, weight: f64, budget: T| -> Result<_, FairError> {
+    let weight = found.weight;
+    parts.pull = (weight > 0.0).then(|| pull.clone().scaled(weight.sqrt()));
+    let solved = parts.whole()?;
+    let points =
+        moved(&parts, &solved, goal, &found, &pull, moving.variation(&solved, weight, budget)?)?;
+    drop((solved, parts, moving));
+    Ok((MovingGrid { points, knots: [ku, kv] }, data.fit(found, original, before)))
+}
+
+/// Data of a grid that carry derivatives.
+struct MovingGridData<'a, T: Real> {
+    data: &'a GridData,
+    original: &'a [Vec3<f64>],
+    sites: MovingSites<T>,
+    /// The original as it changes.
+    start: Vec<Vec3<T>>,
+    /// The rows of the measure.
+    rows: MovingRows<T>,
+    /// Sites that pull, each with its datum.
+    pulling: &'a [(usize, usize)],
+    /// Sites with limits, and their tolerances.
+    limited: Vec<usize>,
+    limits: Vec<T>,
+    tolerances: &'a [T],
+}
+
+impl<T: Real> MovingGridData<'_, T> {
+    /// Changes of a solution where data pull with a weight.
+    fn variation(
+        &self,
+        solved: &Solved,
+        weight: f64,
+        budget: T,
+    ) -> Result<GoalVariation<'_, T>, FairError> {
+        let data = self.data;
         let control = &solved.optimum.points;
-        let mut forces: Vec<Vec3<T>> =
-            rows.slope(control).into_iter().map(|f| f - Vec3::lifted(f.re())).collect();
+        let (radii, all, columns) = (data.radii(), data.rows(), data.counts()[1]);
+        let mut forces = self.rows.forces(control);
         // Forces at the sites act through rows that move.
-        let away: Vec<Vec3<f64>> = control.iter().zip(&original).map(|(p, q)| *p - *q).collect();
-        for (&k, force) in limited.iter().zip(&solved.forces()) {
+        let away: Vec<Vec3<f64>> =
+            control.iter().zip(self.original).map(|(p, q)| *p - *q).collect();
+        for (&k, force) in self.limited.iter().zip(&solved.forces()) {
             let mut force = *force;
             if data.owner(k / columns, k % columns).is_some() {
                 force += all.apply(k, &away) * (weight / (radii[k] * radii[k]));
             }
-            for &(c, f) in &values.rows[k] {
-                let change = f - T::from(f.re());
-                forces[c] += force.map_real(|x| change * x);
-            }
+            self.sites.act(k, force, &mut forces);
         }
         Ok(GoalVariation {
-            originals: through(control, &original)?,
-            tolerances: &own,
-            pulled: pulling.iter().map(|&(_, i)| tolerances[i]).collect(),
+            originals: self.sites.through(control, self.original, |values| data.through(values))?,
+            tolerances: &self.limits,
+            pulled: self.pulling.iter().map(|&(_, i)| self.tolerances[i]).collect(),
             targets: &[],
             forces,
-            rows: &rows,
+            rows: &self.rows,
             bends: &[],
             budget,
-            start: &start,
+            start: &self.start,
         })
-    };
-    let budget = match goal {
-        Goal::Near(own) if found.between => {
-            // The squares of the fairest change, too.
-            if found.share < 1.0 {
-                return Err(FairError::NoDerivative(
-                    "the budget of this surface and its use both depend on the fairest surface, \
-                    so no derivatives are available: use the goal \"budget\"",
-                ));
-            }
-            parts.pull = None;
-            let fairest = parts.whole()?;
-            let optimum = fairest.optimum.clone();
-            let whole = GoalOptimum { share: 1.0, weight: 0.0, optimum, ..found.clone() };
-            check_decided(&whole, &fairest)?;
-            check_unique(&mut parts, &whole, &pull)?;
-            let still = moving(&fairest, 0.0, T::zero())?;
-            let at = moved(&parts, &fairest, Goal::Fairest, &whole, &pull, still)?;
-            let mean = pulling.len() as f64 / 3.0;
-            let used = pulling.iter().fold(T::zero(), |sum, &(k, i)| {
-                let off = values.apply(k, &at) - wanted[k];
-                sum + off.dot(off) / (tolerances[i] * tolerances[i])
-            });
-            tightened(own, used / mean, pulling.len()) * mean
+    }
+
+    /// The budget of the goal `near`, which changes with the squares of the fairest; `own` is that
+    /// of the goal.
+    fn budget(
+        &self,
+        own: f64,
+        found: &GoalOptimum,
+        parts: &mut Parts<'_>,
+        pull: &SparseRows,
+    ) -> Result<T, FairError> {
+        if found.share < 1.0 {
+            return Err(FairError::NoDerivative(
+                "the budget of this surface and its use both depend on the fairest surface, \
+                so no derivatives are available: use the goal \"budget\"",
+            ));
         }
-        _ => T::zero(),
-    };
-    parts.pull = (weight > 0.0).then(|| pull.clone().scaled(weight.sqrt()));
-    let solved = parts.whole()?;
-    let moving = moving(&solved, weight, budget)?;
-    let points = moved(&parts, &solved, goal, &found, &pull, moving)?;
-    drop(solved);
-    drop(parts);
-    Ok((MovingGrid { points, knots: [ku, kv] }, data.fit(found, original, before)))
+        parts.pull = None;
+        let fairest = parts.whole()?;
+        let optimum = fairest.optimum.clone();
+        let whole = GoalOptimum { share: 1.0, weight: 0.0, optimum, ..found.clone() };
+        check_decided(&whole, &fairest)?;
+        check_unique(parts, &whole, pull)?;
+        let still = self.variation(&fairest, 0.0, T::zero())?;
+        let at = moved(parts, &fairest, Goal::Fairest, &whole, pull, still)?;
+        let mean = self.pulling.len() as f64 / 3.0;
+        let used = self.pulling.iter().fold(T::zero(), |sum, &(k, i)| {
+            let off = self.sites.values.apply(k, &at) - self.sites.wanted[k];
+            sum + off.dot(off) / (self.tolerances[i] * self.tolerances[i])
+        });
+        Ok(tightened(own, used / mean, self.pulling.len()) * mean)
+    }
+}
+
+impl GridData {
+    /// Sites with limits, and their tolerances; those that are no data have the largest.
+    fn moving_limits<T: Real>(&self, parts: &Parts<'_>, tolerances: &[T]) -> (Vec<usize>, Vec<T>) {
+        let (radii, all, columns) = (self.radii(), self.rows(), self.counts()[1]);
+        let free = |k: &usize| all.row(*k).0.iter().any(|&c| !parts.frozen[c as usize]);
+        let limited: Vec<usize> = (0..radii.len())
+            .filter(|k| radii[*k] > 0.0 && radii[*k].is_finite() && free(k))
+            .collect();
+        let largest = tolerances.iter().copied().reduce(|a, b| if b.re() > a.re() { b } else { a });
+        let largest = largest.unwrap_or_else(T::zero);
+        let of =
+            |k: &usize| self.owner(k / columns, k % columns).map_or(largest, |i| tolerances[i]);
+        let limits = limited.iter().map(of).collect();
+        (limited, limits)
+    }
+
+    /// The measure's rows as knots, sites and weights move; `bases` are the values at the sites.
+    fn moving_measure<T: Real>(
+        &self,
+        measure: Measure,
+        spaces: &[MovingSpace<'_, T>; 2],
+        [su, sv]: [&[T]; 2],
+        bases: &[Vec<Vec<(usize, T)>>; 2],
+    ) -> Result<MovingRows<T>, FairError> {
+        let scaled = |rows: &[Vec<(usize, T)>], by: &[T]| -> Vec<Vec<(usize, T)>> {
+            let one = |(row, w): (&Vec<(usize, T)>, &T)| {
+                let root = w.sqrt();
+                row.iter().map(|&(c, x)| (c, x * root)).collect()
+            };
+            rows.iter().zip(by).map(one).collect()
+        };
+        let times = |rows: MovingRows<T>, by: f64| -> Vec<Vec<(usize, T)>> {
+            let one = |r: Vec<(usize, T)>| r.into_iter().map(|(c, x)| (c, x * by)).collect();
+            rows.rows.into_iter().map(one).collect()
+        };
+        let [u, v] = &self.layouts;
+        let nv = v.space.count();
+        let (wu, wv) = (weights(su, u.space.is_closed()), weights(sv, v.space.is_closed()));
+        let mu = times(spaces[0].measure(measure)?, unit(measure, u));
+        let mv = times(spaces[1].measure(measure)?, unit(measure, v));
+        let mut rows = products(&mu, &scaled(&bases[1], &wv), nv);
+        rows.rows.extend(products(&scaled(&bases[0], &wu), &mv, nv).rows);
+        Ok(rows)
+    }
 }

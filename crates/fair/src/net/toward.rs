@@ -247,26 +247,7 @@ impl Network {
         if found.share == 0.0 {
             return Ok((points.to_vec(), fit));
         }
-        if self.first_bound() != Bound::ControlPoints {
-            return Err(FairError::NoDerivative(
-                "no derivatives are available for a network with limits along its curves: limit \
-                its points",
-            ));
-        }
-        let explained = allowed(0.0, found.used, owners.len()).is_none();
-        let free = match goal {
-            Goal::Near(share) => found.used > share,
-            Goal::Fairest => explained,
-            _ => false,
-        };
-        if found.weight == 0.0 && free {
-            // Limits at one line leave the others' parabolas free, and which of them the solver takes
-            // says nothing about how they move.
-            return Err(FairError::NoDerivative(
-                "several networks may be equally fair, so no derivatives are available: use the \
-                goal \"budget\"",
-            ));
-        }
+        self.check_derivable(&found, goal, owners.len())?;
         if !rounds.is_empty() {
             let pulling = (&pull, &owners[..]);
             let rows = &self.all_moving_rows(measure, ats)?;
@@ -291,8 +272,7 @@ impl Network {
         let each = self.all_moving_rows(measure, ats)?;
         let rows = MovingRows { rows: each.into_iter().flat_map(|own| own.rows).collect() };
         let forces = if parts.norm == crate::RowNorm::Square {
-            let slope = rows.slope(&solved.optimum.points);
-            slope.into_iter().map(|v| v - Vec3::lifted(v.re())).collect()
+            rows.forces(&solved.optimum.points)
         } else {
             Vec::new()
         };
@@ -316,11 +296,9 @@ impl Network {
             }
             let fairest = parts.whole()?;
             between.check(&fairest, &parts.bounded, &parts.frozen, ats)?;
-            let slope = rows.slope(&fairest.optimum.points);
-            let forces = slope.into_iter().map(|v| v - Vec3::lifted(v.re())).collect();
             let optimum = fairest.optimum.clone();
             let whole = GoalOptimum { share: 1.0, weight: 0.0, optimum, ..found.clone() };
-            let own = moving(forces, T::zero());
+            let own = moving(rows.forces(&fairest.optimum.points), T::zero());
             let at = moved(&parts, &fairest, Goal::Fairest, &whole, &pull, own)?;
             let used = used_of(&at, &owners, points, tolerances);
             budget =
@@ -328,6 +306,37 @@ impl Network {
         }
         let moving = moving(forces, budget);
         Ok((moved(&parts, &solved, goal, &found, &pull, moving)?, fit))
+    }
+
+    /// Refuses derivatives of results that move the points of `count` rows that pull, where limits
+    /// are along curves or the fairest is one of many.
+    fn check_derivable(
+        &self,
+        found: &GoalOptimum,
+        goal: Goal,
+        count: usize,
+    ) -> Result<(), FairError> {
+        if self.first_bound() != Bound::ControlPoints {
+            return Err(FairError::NoDerivative(
+                "no derivatives are available for a network with limits along its curves: limit \
+                its points",
+            ));
+        }
+        let explained = allowed(0.0, found.used, count).is_none();
+        let free = match goal {
+            Goal::Near(share) => found.used > share,
+            Goal::Fairest => explained,
+            _ => false,
+        };
+        if found.weight == 0.0 && free {
+            // Limits at one line leave the others' parabolas free, and which of them the solver takes
+            // says nothing about how they move.
+            return Err(FairError::NoDerivative(
+                "several networks may be equally fair, so no derivatives are available: use the \
+                goal \"budget\"",
+            ));
+        }
+        Ok(())
     }
 
     /// The result of a goal line by line with derivatives.

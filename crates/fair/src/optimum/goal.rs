@@ -269,32 +269,342 @@ impl GoalOptimum {
     }
 }
 
+/// Optima of the measure plus a weight times the squares.
+struct WeightedSolver<'a, 'p> {
+    parts: &'a mut Parts<'p>,
+    pull: &'a SparseRows,
+    /// The last solution with its weight: near it the next begins.
+    last: Option<(f64, CertifiedSolution)>,
+    /// True if solutions may begin near the last one.
+    warm: bool,
+}
+
+impl WeightedSolver<'_, '_> {
+    /// The optimum of a weight; true if it is known which limits are reached.
+    fn solve(&mut self, weight: f64) -> Result<(Optimum, bool), FairError> {
+        let close = |l: &&(f64, CertifiedSolution)| libm::log(l.0 / weight).abs() < NEIGHBOURS;
+        let near = self.last.as_ref().filter(|l| self.warm && close(l));
+        self.parts.pull = (weight > 0.0).then(|| self.pull.clone().scaled(weight.sqrt()));
+        let (optimum, solution) = self.parts.solve_after(near.map(|l| &l.1))?;
+        let decided = solution.active.is_some();
+        self.last = Some((weight, solution));
+        Ok((optimum, decided))
+    }
+}
+
+/// The two ends of the path, and the goal between them.
+struct PathEnds {
+    goal: Goal,
+    norm: RowNorm,
+    conditioned: bool,
+    /// True if the original is no result.
+    held: bool,
+    /// The squares of noise that fills the tolerances evenly.
+    mean: f64,
+    /// The measure of the original.
+    begin: f64,
+    /// The fairest, its measure, and what it takes of the squares.
+    fairest: Optimum,
+    least: f64,
+    squares: f64,
+    /// True if it is the nearest of several.
+    several: bool,
+    /// True if the budget depends on the squares of the fairest.
+    between: bool,
+    /// Degree to which the measure is not that of the surface.
+    foreign: f64,
+}
+
+/// A bracket of the logarithm of the goal's weight, with the values at its ends: regula falsi, the
+/// stale end halved (Illinois).
+struct WeightBracket {
+    low: Option<(f64, f64)>,
+    high: Option<(f64, f64)>,
+    /// 1 if the last value was at the low end, -1 at the high end.
+    side: i32,
+    stride: f64,
+    stepped: f64,
+    /// True if the first weight is near that of the goal.
+    near: bool,
+}
+
+impl WeightBracket {
+    fn width(&self) -> f64 {
+        self.low.zip(self.high).map_or(f64::INFINITY, |(l, h)| h.0 - l.0)
+    }
+
+    fn take(&mut self, trial: f64, value: f64) {
+        let side = if value > 0.0 { 1 } else { -1 };
+        let (own, other) = if side == 1 {
+            (&mut self.low, &mut self.high)
+        } else {
+            (&mut self.high, &mut self.low)
+        };
+        if self.side == side
+            && let Some(stale) = other
+        {
+            stale.1 *= 0.5;
+        }
+        *own = Some((trial, value));
+        self.side = side;
+        if self.near && self.low.is_none() != self.high.is_none() {
+            // The goal is near: beyond it by about as much as it is short.
+            let beyond = 4.0 * value.abs().max(GOAL_ACCURACY);
+            self.stride = beyond.min(LARGEST_STRIDE).max(2.0 * self.stepped);
+            self.stepped = self.stride;
+        }
+    }
+
+    /// The next logarithm; `None` if the bracket is narrower than `close`.
+    fn next(&mut self, close: f64) -> Option<f64> {
+        let trial = match (self.low, self.high) {
+            (Some(l), Some(h)) if h.0 - l.0 < close => return None,
+            (Some(l), Some(h)) => {
+                let share = l.1 / (l.1 - h.1);
+                l.0 + (h.0 - l.0) * share.clamp(0.01, 0.99)
+            }
+            (None, Some(h)) => h.0 - self.stride,
+            (Some(l), None) => l.0 + self.stride,
+            (None, None) => unreachable!("one of them was set"),
+        };
+        if !self.near {
+            self.stride = (2.0 * self.stride).min(LARGEST_STRIDE);
+        }
+        Some(trial)
+    }
+}
+
 impl<E, S> RegularizationPath<'_, E, S>
 where
     E: Fn(&[Vec3<f64>]) -> f64,
     S: Fn(&[Vec3<f64>]) -> f64,
 {
-    /// The original, which measures `begin` where the fairest measures `least`.
-    fn left_as_it_is(&self, fairest: Optimum, begin: f64, least: f64) -> GoalOptimum {
-        let gap = begin - least + fairest.certificate.gap;
-        let certificate = Certificate { value: begin, gap };
-        let mean = (self.count as f64 / 3.0).max(f64::MIN_POSITIVE);
-        let mut left = GoalOptimum::unmoved(self.original, begin, false);
-        left.optimum.certificate = certificate;
-        left.optimum.iterations = fairest.iterations;
-        left.least = least;
-        left.fairest_used = (self.squares)(&fairest.points) / mean;
-        left.fairest = fairest.points;
-        left
+    /// The optimum of a goal. The sum of squares falls and the measure rises with the weight, both
+    /// continuously, so the goal is found between two weights.
+    pub fn follow(
+        &self,
+        goal: Goal,
+        norm: RowNorm,
+        conditioned: bool,
+        parts: &mut Parts<'_>,
+        pull: &SparseRows,
+    ) -> Result<GoalOptimum, FairError> {
+        let begin = (self.energy)(self.original);
+        let held = conditioned || self.moves == Some(1.0);
+        if !held && (begin <= self.noise || goal == Goal::Closest) {
+            // Nothing is left but rounding: not a bit moves.
+            return Ok(GoalOptimum::unmoved(self.original, begin, false));
+        }
+        let warm = self.adapts != Adaptation::Network;
+        let mut solver = WeightedSolver { parts, pull, last: None, warm };
+        let (mut fairest, _) = solver.solve(0.0)?;
+        let mut several = false;
+        if let Some(nearest) = self.nearest {
+            let solved = fairest.points.clone();
+            fairest = nearest(fairest)?;
+            several = fairest.points != solved;
+        }
+        let mut ends = PathEnds {
+            goal,
+            norm,
+            conditioned,
+            held,
+            mean: (self.count as f64 / 3.0).max(f64::MIN_POSITIVE),
+            begin,
+            least: (self.energy)(&fairest.points),
+            squares: (self.squares)(&fairest.points),
+            fairest,
+            several,
+            between: false,
+            foreign: 0.0,
+        };
+        self.adapt(&mut ends);
+        if let Some(found) = self.at_an_end(&ends, &mut solver)? {
+            return Ok(found);
+        }
+        if norm != RowNorm::Square {
+            return Err(FairError::Goal(
+                "budget and share do not apply to a sum of lengths: use `fairest`",
+            ));
+        }
+        let (weight, optimum) = self.search(&ends, &mut solver)?;
+        Ok(self.settle(&ends, optimum, weight))
+    }
+
+    /// Adapts the budget of `near` to the squares of the fairest.
+    fn adapt(&self, ends: &mut PathEnds) {
+        let Goal::Near(share) = ends.goal else { return };
+        let used = ends.squares / ends.mean;
+        match self.adapts {
+            Adaptation::Network if ends.norm == RowNorm::Square => {
+                let own = allowed(share, used, self.count);
+                ends.between = own.is_some_and(|own| own != share);
+                ends.goal = Goal::Near(own.unwrap_or(f64::INFINITY));
+            }
+            Adaptation::Surface if ends.norm == RowNorm::Square && !ends.conditioned => {
+                ends.foreign = foreign_to(used, self.count);
+                let own = tightened(share, used, self.count);
+                ends.between = ![share, FOREIGN_BUDGET, STRANGE_BUDGET].contains(&own);
+                ends.goal = Goal::Near(own);
+            }
+            _ => {}
+        }
+    }
+
+    /// The optimum of a goal that is met without a search: by the fairest, the original, or at a
+    /// weight that is known.
+    fn at_an_end(
+        &self,
+        ends: &PathEnds,
+        solver: &mut WeightedSolver<'_, '_>,
+    ) -> Result<Option<GoalOptimum>, FairError> {
+        let &PathEnds { held, mean, begin, least, squares, .. } = ends;
+        let fairest = || Ok(Some(self.ended(ends, ends.fairest.clone(), 0.0)));
+        match ends.goal {
+            Goal::Closest => {
+                // Beside this weight the measure is a trace that decides where data do not.
+                let weight = CLOSEST * begin.max(least).max(f64::MIN_POSITIVE) / mean;
+                let (optimum, _) = solver.solve(weight)?;
+                return Ok(Some(self.ended(ends, optimum, weight)));
+            }
+            Goal::Energy(most) => {
+                if most.is_nan() || most <= 0.0 {
+                    return Err(FairError::Goal("a bound on the measure is positive"));
+                }
+                if least > most * (1.0 + GOAL_ACCURACY) {
+                    return Err(FairError::Energy { asked: most, least });
+                }
+                if !held && begin <= most {
+                    return Ok(Some(self.left_as_it_is(ends)));
+                }
+                if squares == 0.0 || least >= most {
+                    return fairest();
+                }
+            }
+            Goal::Fairest => return fairest(),
+            Goal::Budget(share) | Goal::Near(share) => {
+                if share.is_nan() || share <= 0.0 {
+                    return Err(FairError::Goal("a budget is a positive share"));
+                }
+                if squares <= share * mean || ends.norm != RowNorm::Square {
+                    return Ok(Some(self.settle(ends, ends.fairest.clone(), 0.0)));
+                }
+            }
+            Goal::Nearest(share) => {
+                if share.is_nan() || share < 0.0 {
+                    return Err(FairError::Goal("a share of the measure is 0 or more"));
+                }
+                if share == 0.0 || squares == 0.0 {
+                    return fairest();
+                }
+                if !held && begin <= (1.0 + share) * least + self.noise {
+                    return Ok(Some(self.left_as_it_is(ends)));
+                }
+            }
+        }
+        Ok(None)
+    }
+
+    /// The weight that meets the goal, and its optimum.
+    fn search(
+        &self,
+        ends: &PathEnds,
+        solver: &mut WeightedSolver<'_, '_>,
+    ) -> Result<(f64, Optimum), FairError> {
+        let nearly = self.nearly(ends, solver)?;
+        let near = nearly.is_some();
+        let mut trial =
+            nearly.as_ref().map_or_else(|| self.balance(ends), |found| libm::log(found.weight));
+        let known = nearly.filter(|found| found.good).map(|found| found.optimum);
+        let (low, high) = (None, None);
+        let mut bracket =
+            WeightBracket { low, high, side: 0, stride: FIRST_STRIDE, stepped: 0.0, near };
+        let mut idle = 0;
+        let mut best: Option<(f64, f64, Optimum)> = None;
+        for _ in 0..MOST_SOLUTIONS {
+            let (optimum, decided) = solver.solve(libm::exp(trial))?;
+            let value = self.missing(ends, &optimum);
+            // Conditions may keep the data farther off than the budget.
+            let settled = bracket.low.is_some_and(|l| l.1 - value < 1e-6);
+            if ends.held && bracket.high.is_none() && value > 0.0 && settled {
+                best = Some((trial, value, optimum));
+                break;
+            }
+            let better = best.as_ref().is_none_or(|b| value.abs() < b.1.abs());
+            if better {
+                best = Some((trial, value, optimum));
+            }
+            // Between weights so near to each other what is left is rounding of the optima.
+            let many = self.count > MANY;
+            let undecided = near && many && !decided;
+            let rounded = undecided && value.abs() <= NOISY;
+            if let Some(bounded) = known.as_ref().filter(|_| undecided && !rounded) {
+                // No digits are left to move the weight by: what was found under the budget is the
+                // optimum.
+                best = Some((trial, value, bounded.clone()));
+                break;
+            }
+            // If it is known which limits are reached, or there are few, each further solution is
+            // fast.
+            let cheap = known.is_some() && (decided || !many);
+            let close = if cheap { DECIDED } else { GOAL_ACCURACY };
+            idle = if better { 0 } else { idle + 1 };
+            let noisy = if cheap { idle >= MOST_IDLE } else { !better && bracket.width() < NOISY };
+            if value.abs() <= close || rounded || noisy {
+                break;
+            }
+            bracket.take(trial, value);
+            let Some(next) = bracket.next(close) else { break };
+            trial = next;
+        }
+        let (weight, _, optimum) = best.expect("one solution at least");
+        Ok((libm::exp(weight), optimum))
+    }
+
+    /// The optimum under the budget, nearly.
+    fn nearly(
+        &self,
+        ends: &PathEnds,
+        solver: &mut WeightedSolver<'_, '_>,
+    ) -> Result<Option<BudgetOptimum>, FairError> {
+        match ends.goal {
+            Goal::Budget(_) if self.known.is_some() => Ok(self.known.clone()),
+            Goal::Budget(share) | Goal::Near(share)
+                if !ends.conditioned && self.adapts != Adaptation::Network =>
+            {
+                solver.parts.pull = None;
+                solver.parts.within(solver.pull, share * ends.mean)
+            }
+            _ => Ok(None),
+        }
+    }
+
+    /// A falling function of the weight's logarithm, negative when the goal is met.
+    fn missing(&self, ends: &PathEnds, optimum: &Optimum) -> f64 {
+        match ends.goal {
+            Goal::Fairest => -1.0,
+            Goal::Budget(share) | Goal::Near(share) => {
+                libm::log((self.squares)(&optimum.points) / (share * ends.mean))
+            }
+            Goal::Nearest(share) => {
+                // Of curves near enough to the least the one nearest to the data: towards the data
+                // the measure rises.
+                let most = (1.0 + share) * ends.least + self.noise;
+                libm::log(most / (self.energy)(&optimum.points))
+            }
+            Goal::Energy(most) => libm::log(most / (self.energy)(&optimum.points)),
+            Goal::Closest => 0.0,
+        }
     }
 
     /// The logarithm of the weight that balances the measure at the fairest, about: its force there towards
-    /// the original is that of the limits, which the weight replaces. `[begin, least, squares]` are the
-    /// measures of both and what the fairest takes of the squares.
-    fn balance(&self, fairest: &[Vec3<f64>], [begin, least, squares]: [f64; 3]) -> f64 {
+    /// the original is that of the limits, which the weight replaces.
+    fn balance(&self, ends: &PathEnds) -> f64 {
+        let &PathEnds { begin, least, squares, .. } = ends;
         // The measure is a parabola along the line between them; its slope is read where the square
         // term does not cover it.
         let s = (least / begin).sqrt().clamp(1e-6, 0.5);
+        let fairest = &ends.fairest.points;
         let between: Vec<_> =
             fairest.iter().zip(self.original).map(|(p, q)| *p + (*q - *p) * s).collect();
         let rise = (self.energy)(&between) - least - s * s * (begin - least);
@@ -307,261 +617,57 @@ where
         }
     }
 
-    /// The optimum of a goal. The sum of squares falls and the measure rises with the weight, both
-    /// continuously, so the goal is found between two weights.
-    pub fn follow(
-        &self,
-        goal: Goal,
-        norm: RowNorm,
-        conditioned: bool,
-        parts: &mut Parts<'_>,
-        pull: &SparseRows,
-    ) -> Result<GoalOptimum, FairError> {
-        // The last solution with its weight: near it the next begins.
-        let mut last: Option<(f64, CertifiedSolution)> = None;
-        let network = self.adapts == Adaptation::Network;
-        let mut solve = |parts: &mut Parts<'_>,
-                         weight: f64|
-         -> Result<(Optimum, bool), FairError> {
-            let close = |l: &&(f64, CertifiedSolution)| libm::log(l.0 / weight).abs() < NEIGHBOURS;
-            let near = last.as_ref().filter(|l| !network && close(l));
-            parts.pull = (weight > 0.0).then(|| pull.clone().scaled(weight.sqrt()));
-            let (optimum, solution) = parts.solve_after(near.map(|l| &l.1))?;
-            let decided = solution.active.is_some();
-            last = Some((weight, solution));
-            Ok((optimum, decided))
-        };
-        let mean = (self.count as f64 / 3.0).max(f64::MIN_POSITIVE);
-        let begin = (self.energy)(self.original);
-        let held = conditioned || self.moves == Some(1.0);
-        if !held && (begin <= self.noise || goal == Goal::Closest) {
-            // Nothing is left but rounding: not a bit moves.
-            return Ok(GoalOptimum::unmoved(self.original, begin, false));
+    /// The result between the original and the optimum of a weight, by what there is to gain: both
+    /// are within the tolerances, and so is all between them.
+    fn settle(&self, ends: &PathEnds, optimum: Optimum, weight: f64) -> GoalOptimum {
+        if ends.held || !matches!(ends.goal, Goal::Near(_)) {
+            return self.ended(ends, optimum, weight);
         }
-        let (mut fairest, _) = solve(parts, 0.0)?;
-        let mut several = false;
-        if let Some(nearest) = self.nearest {
-            let solved = fairest.points.clone();
-            fairest = nearest(fairest)?;
-            several = fairest.points != solved;
+        let value = (self.energy)(&optimum.points);
+        let gain = || worth_beside(ends.begin / value.max(f64::MIN_POSITIVE), ends.foreign);
+        let share = self.moves.unwrap_or_else(gain);
+        if share >= 1.0 {
+            return self.ended(ends, optimum, weight);
         }
-        let least = (self.energy)(&fairest.points);
-        let squares = (self.squares)(&fairest.points);
-        let fairest_points = fairest.points.clone();
-        let (mut between, mut foreign) = (false, 0.0);
-        let goal = match goal {
-            Goal::Near(share) if network && norm == RowNorm::Square => {
-                let used = squares / mean;
-                let own = allowed(share, used, self.count);
-                between = own.is_some_and(|own| own != share);
-                Goal::Near(own.unwrap_or(f64::INFINITY))
-            }
-            Goal::Near(share)
-                if self.adapts == Adaptation::Surface
-                    && norm == RowNorm::Square
-                    && !conditioned =>
-            {
-                foreign = foreign_to(squares / mean, self.count);
-                let own = tightened(share, squares / mean, self.count);
-                between = ![share, FOREIGN_BUDGET, STRANGE_BUDGET].contains(&own);
-                Goal::Near(own)
-            }
-            other => other,
+        let between = |(p, q): (&Vec3<f64>, &Vec3<f64>)| {
+            if share == 0.0 { *q } else { *q + (*p - *q) * share }
         };
-        let ended = |optimum: Optimum, weight: f64| {
-            let used = (self.squares)(&optimum.points) / mean;
-            let value = (self.energy)(&optimum.points);
-            let certificate = Certificate { value, ..optimum.certificate };
-            Ok(GoalOptimum {
-                optimum: Optimum { certificate, ..optimum },
-                share: 1.0,
-                used,
-                least,
-                weight,
-                fairest: fairest_points.clone(),
-                fairest_used: squares / mean,
-                between,
-                several: several && weight == 0.0,
-            })
-        };
-        // Between the data's own curve and the optimum, by what there is to gain: both are within
-        // the tolerances, and so is all between them.
-        let settle = |optimum: Optimum, weight: f64| {
-            let Goal::Near(_) = goal else { return ended(optimum, weight) };
-            if held {
-                return ended(optimum, weight);
-            }
-            let value = (self.energy)(&optimum.points);
-            let gain = || worth_beside(begin / value.max(f64::MIN_POSITIVE), foreign);
-            let share = self.moves.unwrap_or_else(gain);
-            if share >= 1.0 {
-                return ended(optimum, weight);
-            }
-            let between = |(p, q): (&Vec3<f64>, &Vec3<f64>)| {
-                if share == 0.0 { *q } else { *q + (*p - *q) * share }
-            };
-            let points: Vec<_> = optimum.points.iter().zip(self.original).map(between).collect();
-            let now = (self.energy)(&points);
-            let gap = optimum.certificate.gap + (now - value).max(0.0);
-            let certificate = Certificate { value: now, gap };
-            let active = if share == 0.0 { 0 } else { optimum.active };
-            let mut found = ended(Optimum { points, certificate, active, ..optimum }, weight)?;
-            found.share = share;
-            Ok(found)
-        };
-        // A falling function of the weight's logarithm, negative when the goal is met.
-        let measured = |optimum: &Optimum| match goal {
-            Goal::Fairest => -1.0,
-            Goal::Budget(share) | Goal::Near(share) => {
-                libm::log((self.squares)(&optimum.points) / (share * mean))
-            }
-            Goal::Nearest(share) => {
-                // Of curves near enough to the least the one nearest to the data: towards the data
-                // the measure rises.
-                libm::log(((1.0 + share) * least + self.noise) / (self.energy)(&optimum.points))
-            }
-            Goal::Energy(most) => libm::log(most / (self.energy)(&optimum.points)),
-            Goal::Closest => 0.0,
-        };
-        match goal {
-            Goal::Closest => {
-                // Beside this weight the measure is a trace that decides where data do not.
-                let weight = CLOSEST * begin.max(least).max(f64::MIN_POSITIVE) / mean;
-                return ended(solve(parts, weight)?.0, weight);
-            }
-            Goal::Energy(most) => {
-                if most.is_nan() || most <= 0.0 {
-                    return Err(FairError::Goal("a bound on the measure is positive"));
-                }
-                if least > most * (1.0 + GOAL_ACCURACY) {
-                    return Err(FairError::Energy { asked: most, least });
-                }
-                if !held && begin <= most {
-                    return Ok(self.left_as_it_is(fairest, begin, least));
-                }
-                if squares == 0.0 || least >= most {
-                    return ended(fairest, 0.0);
-                }
-            }
-            Goal::Fairest => return ended(fairest, 0.0),
-            Goal::Budget(share) | Goal::Near(share) => {
-                if share.is_nan() || share <= 0.0 {
-                    return Err(FairError::Goal("a budget is a positive share"));
-                }
-                if squares <= share * mean || norm != RowNorm::Square {
-                    return settle(fairest, 0.0);
-                }
-            }
-            Goal::Nearest(share) => {
-                if share.is_nan() || share < 0.0 {
-                    return Err(FairError::Goal("a share of the measure is 0 or more"));
-                }
-                if share == 0.0 || squares == 0.0 {
-                    return ended(fairest, 0.0);
-                }
-                if !held && begin <= (1.0 + share) * least + self.noise {
-                    return Ok(self.left_as_it_is(fairest, begin, least));
-                }
-            }
+        let points: Vec<_> = optimum.points.iter().zip(self.original).map(between).collect();
+        let now = (self.energy)(&points);
+        let gap = optimum.certificate.gap + (now - value).max(0.0);
+        let certificate = Certificate { value: now, gap };
+        let active = if share == 0.0 { 0 } else { optimum.active };
+        let optimum = Optimum { points, certificate, active, ..optimum };
+        GoalOptimum { share, ..self.ended(ends, optimum, weight) }
+    }
+
+    /// The optimum of a weight as the result.
+    fn ended(&self, ends: &PathEnds, optimum: Optimum, weight: f64) -> GoalOptimum {
+        let value = (self.energy)(&optimum.points);
+        let certificate = Certificate { value, ..optimum.certificate };
+        GoalOptimum {
+            share: 1.0,
+            used: (self.squares)(&optimum.points) / ends.mean,
+            optimum: Optimum { certificate, ..optimum },
+            least: ends.least,
+            weight,
+            fairest: ends.fairest.points.clone(),
+            fairest_used: ends.squares / ends.mean,
+            between: ends.between,
+            several: ends.several && weight == 0.0,
         }
-        if norm != RowNorm::Square {
-            return Err(FairError::Goal(
-                "budget and share do not apply to a sum of lengths: use `fairest`",
-            ));
-        }
-        // Between two weights by regula falsi on logarithms, the stale end halved (Illinois).
-        let mut low: Option<(f64, f64)> = None;
-        let mut high: Option<(f64, f64)> = None;
-        let nearly = match goal {
-            Goal::Budget(_) if self.known.is_some() => self.known.clone(),
-            Goal::Budget(share) | Goal::Near(share) if !conditioned && !network => {
-                parts.pull = None;
-                parts.within(pull, share * mean)?
-            }
-            _ => None,
-        };
-        let guess = || self.balance(&fairest.points, [begin, least, squares]);
-        let mut trial = nearly.as_ref().map_or_else(guess, |found| libm::log(found.weight));
-        let begun = nearly.is_some();
-        let known = nearly.filter(|found| found.good).map(|found| found.optimum);
-        let mut stride = FIRST_STRIDE;
-        let (mut side, mut stepped, mut idle) = (0, 0.0, 0);
-        let mut best: Option<(f64, f64, Optimum)> = None;
-        for _ in 0..MOST_SOLUTIONS {
-            let (optimum, decided) = solve(parts, libm::exp(trial))?;
-            let value = measured(&optimum);
-            // Conditions may keep the data farther off than the budget.
-            let settled = low.is_some_and(|l| l.1 - value < 1e-6);
-            if held && high.is_none() && value > 0.0 && settled {
-                best = Some((trial, value, optimum));
-                break;
-            }
-            let better = best.as_ref().is_none_or(|b| value.abs() < b.1.abs());
-            if better {
-                best = Some((trial, value, optimum));
-            }
-            let width = low.zip(high).map_or(f64::INFINITY, |(l, h)| h.0 - l.0);
-            // Between weights so near to each other what is left is rounding of the optima.
-            let many = self.count > MANY;
-            let undecided = begun && many && !decided;
-            let rounded = undecided && value.abs() <= NOISY;
-            if let Some(bounded) = known.as_ref().filter(|_| undecided && !rounded) {
-                // No digits are left to move the weight by: what was found under the budget is the optimum.
-                let value = measured(bounded);
-                best = Some((trial, value, bounded.clone()));
-                break;
-            }
-            // If it is known which limits are reached, or there are few, each further solution is
-            // fast.
-            let cheap = known.is_some() && (decided || !many);
-            let close = if cheap { DECIDED } else { GOAL_ACCURACY };
-            idle = if better { 0 } else { idle + 1 };
-            let noisy = if cheap { idle >= MOST_IDLE } else { !better && width < NOISY };
-            if value.abs() <= close || rounded || noisy {
-                break;
-            }
-            if value > 0.0 {
-                if side == 1
-                    && let Some(h) = &mut high
-                {
-                    h.1 *= 0.5;
-                }
-                low = Some((trial, value));
-                side = 1;
-            } else {
-                if side == -1
-                    && let Some(l) = &mut low
-                {
-                    l.1 *= 0.5;
-                }
-                high = Some((trial, value));
-                side = -1;
-            }
-            if begun && low.is_none() != high.is_none() {
-                // The goal is near: beyond it by about as much as it is short.
-                let beyond = 4.0 * value.abs().max(GOAL_ACCURACY);
-                stride = beyond.min(LARGEST_STRIDE).max(2.0 * stepped);
-                stepped = stride;
-            }
-            trial = match (low, high) {
-                (Some(l), Some(h)) => {
-                    if h.0 - l.0 < if cheap { DECIDED } else { GOAL_ACCURACY } {
-                        break;
-                    }
-                    let share = l.1 / (l.1 - h.1);
-                    l.0 + (h.0 - l.0) * share.clamp(0.01, 0.99)
-                }
-                (None, Some(h)) => h.0 - stride,
-                (Some(l), None) => l.0 + stride,
-                (None, None) => unreachable!("one of them was set"),
-            };
-            if !begun {
-                stride = (2.0 * stride).min(LARGEST_STRIDE);
-            }
-        }
-        let (weight, _, optimum) = best.expect("one solution at least");
-        let weight = libm::exp(weight);
-        settle(optimum, weight)
+    }
+
+    /// The original as the result.
+    fn left_as_it_is(&self, ends: &PathEnds) -> GoalOptimum {
+        let fairest = &ends.fairest;
+        let mut left = GoalOptimum::unmoved(self.original, ends.begin, false);
+        left.optimum.certificate.gap = ends.begin - ends.least + fairest.certificate.gap;
+        left.optimum.iterations = fairest.iterations;
+        left.least = ends.least;
+        left.fairest_used = ends.squares / ends.mean;
+        left.fairest.clone_from(&fairest.points);
+        left
     }
 }
 

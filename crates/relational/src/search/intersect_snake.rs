@@ -4,6 +4,7 @@
 //! on one of them.
 
 use super::arguments::{Onto, Target};
+use super::branch_ends::{cut_open, place_at, turn_to_start};
 use super::branch_order::BranchNumber;
 use super::cut::{Both, Cut, CutJet, CutView, Second};
 use super::outcome::no_intersection;
@@ -560,6 +561,61 @@ fn no_start(field: FieldId) -> CallError {
         .in_field(field)
 }
 
+/// The error of a magnet that is not on the branch.
+fn open_end((field, which): (FieldId, &str), key: Option<Key>, tolerance: f64) -> CallError {
+    CallError::new("open-end", format!("the {which} is not on the intersection"))
+        .expected(format!("a magnet within {tolerance:e} of it"))
+        .found("a magnet away from it")
+        .help("make it by IntRing, IntMagnet or IntBead with the same surface or plane")
+        .related(key, "is the magnet")
+        .in_field(field)
+}
+
+/// Begin of a cut as parameters change.
+enum CutBegin<T> {
+    /// At the ends, where they are known.
+    Ends([Option<Vec3<T>>; 2]),
+    /// Of a closed cut: in the plane through a point across a direction.
+    AcrossPlane(Vec3<T>, Vec3),
+    /// Of a closed cut: at the point nearest to another.
+    Nearest(Vec3<T>),
+}
+
+impl<T: Real> CutBegin<T> {
+    /// Distances of the cut's ends beyond those of its pieces, as far as they depend on parameters;
+    /// `at_end` returns the first (0) or the last (1) point of the pieces.
+    fn offsets(&self, at_end: impl Fn(usize, Order) -> Option<CutJet<T>>) -> Option<[T; 2]> {
+        let mut offsets = [T::zero(); 2];
+        match *self {
+            Self::Ends(places) => {
+                for (k, place) in places.iter().enumerate() {
+                    let Some(place) = place else { continue };
+                    let end = at_end(k, Order::First)?;
+                    let along = Vec3::lifted(end.tangent.re()).dot(*place - end.x);
+                    offsets[k] = along - along.re();
+                }
+            }
+            Self::AcrossPlane(x, d) => {
+                // The branch begins where it crosses the plane d . (X - x) = 0.
+                let level = Vec3::lifted(d).dot(at_end(0, Order::First)?.x - x);
+                offsets = [(level - level.re()) * (-1.0 / d.dot(d)); 2];
+            }
+            Self::Nearest(m) => {
+                // The branch begins where (X - M) . T is zero; the derivative of this with respect
+                // to the length is 1 + (X - M) . k with the curvature k.
+                let end = at_end(0, Order::Second)?;
+                let away = end.x - m;
+                let slope = 1.0 + away.re().dot(end.curvature.re());
+                if slope.abs() > 1e-9 {
+                    let level = away.dot(end.tangent);
+                    offsets = [(level - level.re()) * (-1.0 / slope); 2];
+                }
+            }
+        }
+        Some(offsets)
+    }
+}
+
 /// Cuts the branch to its ends, gives it its length as parameter, with derivatives.
 fn set_up<T: Real>(
     request: &CutRequest<T>,
@@ -570,45 +626,12 @@ fn set_up<T: Real>(
     let (first, second, fields) = (&request.first, &request.second, request.fields);
     let reference = request.reference();
     let mut ends = request.ends.each_ref().map(Option::as_ref);
-    // Stations of the given ends.
     let mut places = [None, None];
     for (k, end) in ends.iter().enumerate() {
         let Some(end) = end else { continue };
-        let x = end.x.re();
-        let at = (0..branch.stations.len().saturating_sub(1))
-            .filter_map(|i| {
-                let (a, b) = (&branch.stations[i], &branch.stations[i + 1]);
-                let chord = b.x - a.x;
-                let (share, away) = nearest_on_chord(a, b, x);
-                let guess = std::array::from_fn(|k| a.q[k] + share * (b.q[k] - a.q[k]));
-                (away <= 0.3 * chord.norm() + context.tolerance).then_some((away, i, guess))
-            })
-            .min_by(|a, b| a.0.total_cmp(&b.0));
-        let at_seams = seam_at(&branch.stations, x, SEAM * crossing.size);
-        if let Some(i) = at_seams.filter(|_| branch.closed()) {
-            places[k] = Some((i, branch.stations[i]));
-            continue;
-        }
-        let station = at.and_then(|(_, i, guess)| {
-            let q = crossing.across(guess, x, branch.stations[i].tangent)?;
-            let station = crossing.station(q)?;
-            (station.x.distance(x) <= context.tolerance).then_some((i, station))
-        });
-        match station {
-            Some(place) => places[k] = Some(place),
-            None => {
-                let (field, which) = fields.ends[k];
-                return Err(CallError::new(
-                    "open-end",
-                    format!("the {which} is not on the intersection"),
-                )
-                .expected(format!("a magnet within {:e} of it", context.tolerance))
-                .found("a magnet away from it")
-                .help("make it by IntRing, IntMagnet or IntBead with the same surface or plane")
-                .related(end.key, "is the magnet")
-                .in_field(field));
-            }
-        }
+        let place = place_at(crossing, &branch, end.x.re(), context.tolerance);
+        places[k] =
+            Some(place.ok_or_else(|| open_end(fields.ends[k], end.key, context.tolerance))?);
     }
     let closed = branch.closed();
     // The given start is the end of the opposite direction.
@@ -620,81 +643,14 @@ fn set_up<T: Real>(
         ends.swap(0, 1);
         places.swap(0, 1);
     }
-    let mut reversed = false;
     let whole = closed && places[1].is_none();
     // A closed branch from a seam to the seam, where it may have a corner.
-    let mut at_seam_start = false;
-    if closed {
-        branch.stations.pop();
-        let first_place = match ends[0] {
-            None => nearest_station(crossing, &branch.stations, reference.re()),
-            Some(_) => places[0],
-        };
-        let seam = first_place
-            .and_then(|(_, station)| seam_at(&branch.stations, station.x, SEAM * crossing.size));
-        if let Some(i) = seam {
-            branch.stations.rotate_left(i);
-            at_seam_start = whole;
-        } else if let Some((i, station)) = first_place {
-            let count = branch.stations.len();
-            branch.stations.rotate_left((i + 1) % count);
-            if whole {
-                branch.stations.insert(0, station);
-            } else {
-                // A branch that was followed from its start has stations there.
-                if let [.., before, last] = &branch.stations[..]
-                    && is_at(last, &station, before)
-                {
-                    branch.stations.pop();
-                }
-                begin_at(&mut branch, station);
-            }
-        }
-        if !at_seam_start {
-            let begin = branch.stations[0];
-            branch.stations.push(begin);
-        }
-        if let Some((_, station)) = places[1] {
-            cut_after(&mut branch, &station);
-        }
+    let at_seam_start = if closed {
+        turn_to_start(crossing, &mut branch, places, reference.re())
     } else {
-        let order = |k: usize| {
-            places[k]
-                .as_ref()
-                .map(|(i, s)| (*i, (s.x - branch.stations[*i].x).dot(branch.stations[*i].tangent)))
-        };
-        if let (Some(a), Some(b)) = (order(0), order(1)) {
-            reversed = b.0 < a.0 || a.0 == b.0 && b.1 < a.1;
-        } else if places[1].is_none() && places[0].is_some() {
-            // From the start to the farther end.
-            let (i, _) = places[0].expect("just seen");
-            reversed = i * 2 > branch.stations.len();
-        } else if let Some((i, _)) = places[1] {
-            reversed = i * 2 < branch.stations.len();
-        }
-        if reversed {
-            branch.stations.reverse();
-            branch.ends.swap(0, 1);
-            for s in &mut branch.stations {
-                s.tangent = -s.tangent;
-                s.rate = s.rate.map(|r| -r);
-            }
-        }
-        let turned = |station: TracePoint| {
-            let mut s = station;
-            if reversed {
-                s.tangent = -s.tangent;
-                s.rate = s.rate.map(|r| -r);
-            }
-            s
-        };
-        if let Some((_, station)) = places[1] {
-            cut_after(&mut branch, &turned(station));
-        }
-        if let Some((_, station)) = places[0] {
-            cut_before(&mut branch, &turned(station));
-        }
-    }
+        cut_open(&mut branch, places);
+        false
+    };
     for (k, end) in branch.ends.iter().enumerate() {
         let given = places[k].is_some();
         if !given && matches!(end, BranchEnd::Tangent | BranchEnd::Lost) {
@@ -720,10 +676,13 @@ fn set_up<T: Real>(
         }
     };
     let places = [end_place(0), end_place(1)];
-    // A closed branch begins in the plane through its start across its own direction.
-    let shift = ends[0]
-        .filter(|_| whole && !at_seam_start)
-        .map(|end| (end.x, Vec3::lifted(stops[0].station.tangent)));
+    let begin = match ends[0] {
+        Some(end) if whole && !at_seam_start => {
+            CutBegin::AcrossPlane(end.x, stops[0].station.tangent)
+        }
+        None if whole => CutBegin::Nearest(reference),
+        _ => CutBegin::Ends(places),
+    };
     let failed = || lost("a point where they are nearly tangent").in_field(fields.target);
     let fits = fitted(crossing, &stops).ok_or_else(failed)?;
     let both = Both { first: first.clone(), second: second.clone() };
@@ -741,31 +700,7 @@ fn set_up<T: Real>(
         let q = both.unknowns(&piece.guide, stop.station.q, T::from(y))?;
         both.along(q, stop.station.tangent, order)
     };
-    // Distance of the snake's ends beyond those of its pieces, as far as they depend on parameters.
-    let mut offsets = [T::zero(); 2];
-    for (k, place) in places.iter().enumerate() {
-        if let Some(place) = place {
-            let end = at_end(k, Order::First).ok_or_else(failed)?;
-            let along = Vec3::lifted(end.tangent.re()).dot(*place - end.x);
-            offsets[k] = along - along.re();
-        }
-    }
-    if let Some((x, d)) = shift {
-        // The branch begins where it crosses the plane d . (X - x) = 0.
-        let level = d.dot(at_end(0, Order::First).ok_or_else(failed)?.x - x);
-        let slope = d.re().dot(stops[0].station.tangent);
-        offsets = [(level - level.re()) * (-1.0 / slope); 2];
-    } else if whole && (ends[0].is_none() || !at_seam_start) {
-        // The branch begins where (X - M) . T is zero; the derivative of this with respect to the
-        // length is 1 + (X - M) . k with the curvature k.
-        let end = at_end(0, Order::Second).ok_or_else(failed)?;
-        let away = end.x - reference;
-        let slope = 1.0 + away.re().dot(end.curvature.re());
-        if slope.abs() > 1e-9 {
-            let level = away.dot(end.tangent);
-            offsets = [(level - level.re()) * (-1.0 / slope); 2];
-        }
-    }
+    let offsets = begin.offsets(at_end).ok_or_else(failed)?;
     for piece in &mut pieces {
         piece.begin -= offsets[0];
     }
@@ -850,114 +785,4 @@ fn with_joints<T: Real>(
         stop.joint = lines.iter().find(crosses).copied();
     }
     stops
-}
-
-/// Distance within which a station at a seam is a start, relative to the size.
-const SEAM: f64 = 1e-9;
-
-/// The station beyond a seam, of two at the point `x`, within a distance; the stations are a closed branch.
-fn seam_at(stations: &[TracePoint], x: Vec3, near: f64) -> Option<usize> {
-    let n = stations.len();
-    (0..n).find(|&i| {
-        stations[i].x.distance(x) <= near && at_seam(&stations[(i + n - 1) % n], &stations[i])
-    })
-}
-
-/// The point of a closed branch nearest to `m`, between which stations it is and itself; the last
-/// station is not the first again.
-fn nearest_station(
-    crossing: &Crossing<'_>,
-    stations: &[TracePoint],
-    m: Vec3,
-) -> Option<(usize, TracePoint)> {
-    let n = stations.len();
-    let along = |s: &TracePoint| (s.x - m).dot(s.tangent);
-    let k = (0..n).min_by(|&a, &b| {
-        stations[a].x.distance(m).total_cmp(&stations[b].x.distance(m)).then(a.cmp(&b))
-    })?;
-    let i = if along(&stations[k]) > 0.0 { (k + n - 1) % n } else { k };
-    let (mut a, mut b) = (stations[i], stations[(i + 1) % n]);
-    if at_seam(&a, &b) {
-        return Some((i, a));
-    }
-    let (mut f, mut g) = (along(&a), along(&b));
-    if f > 0.0 || g < 0.0 {
-        return Some((i, a));
-    }
-    for round in 0..80 {
-        if b.x.distance(a.x) <= 1e-13 * crossing.size {
-            break;
-        }
-        // False position, and halving when that is slow.
-        let share = if round % 3 == 2 || g == f { 0.5 } else { (-f / (g - f)).clamp(0.0, 1.0) };
-        let x = a.x + (b.x - a.x) * share;
-        let guess = std::array::from_fn(|k| a.q[k] + share * (b.q[k] - a.q[k]));
-        let d = (b.x - a.x).normalized()?;
-        let mut s = crossing.station(crossing.across_near(guess, x, d)?)?;
-        if s.tangent.dot(a.tangent) < 0.0 {
-            s.tangent = -s.tangent;
-            s.rate = s.rate.map(|r| -r);
-        }
-        let h = along(&s);
-        if h.abs() <= 1e-14 * crossing.size {
-            return Some((i, s));
-        }
-        if h < 0.0 { (a, f) = (s, h) } else { (b, g) = (s, h) }
-    }
-    Some((i, a))
-}
-
-fn cut_after(branch: &mut Branch, station: &TracePoint) {
-    let at = position(branch, station);
-    branch.stations.truncate(at + 1);
-    push_apart(branch, *station);
-}
-
-fn cut_before(branch: &mut Branch, station: &TracePoint) {
-    let at = position(branch, station);
-    branch.stations.drain(..=at);
-    begin_at(branch, *station);
-}
-
-/// Puts a station before the others, or in place of the first if it is there.
-fn begin_at(branch: &mut Branch, station: TracePoint) {
-    match &branch.stations[..] {
-        [first, next, ..] if is_at(first, &station, next) => branch.stations[0] = station,
-        [first] if first.x.distance(station.x).is_finite() => branch.stations[0] = station,
-        _ => branch.stations.insert(0, station),
-    }
-}
-
-/// True if a station is at another one, for what the next station is away.
-fn is_at(station: &TracePoint, other: &TracePoint, next: &TracePoint) -> bool {
-    station.x.distance(other.x) < 1e-6 * next.x.distance(station.x)
-}
-
-/// Position of the nearest point on the chord between two stations, as a fraction, and its
-/// distance; at a crease the stations coincide.
-fn nearest_on_chord(a: &TracePoint, b: &TracePoint, x: Vec3) -> (f64, f64) {
-    let chord = b.x - a.x;
-    let length = chord.norm_sq();
-    let share = if length > 0.0 { ((x - a.x).dot(chord) / length).clamp(0.0, 1.0) } else { 0.0 };
-    (share, (a.x + chord * share).distance(x))
-}
-
-/// The last station before the given one.
-fn position(branch: &Branch, station: &TracePoint) -> usize {
-    let away =
-        |i: &usize| nearest_on_chord(&branch.stations[*i], &branch.stations[*i + 1], station.x).1;
-    let last = branch.stations.len().saturating_sub(1);
-    (0..last).min_by(|a, b| away(a).total_cmp(&away(b))).unwrap_or(0)
-}
-
-fn push_apart(branch: &mut Branch, station: TracePoint) {
-    let count = branch.stations.len();
-    let last = branch.stations[count - 1];
-    let before =
-        if count > 1 { branch.stations[count - 2].x.distance(last.x) } else { f64::INFINITY };
-    if count > 1 && last.x.distance(station.x) < 1e-6 * before {
-        branch.stations[count - 1] = station;
-    } else {
-        branch.stations.push(station);
-    }
 }

@@ -4,6 +4,7 @@
 
 mod arguments;
 mod beads;
+mod branch_ends;
 mod branch_order;
 mod cut;
 mod distances;
