@@ -164,9 +164,10 @@ def _type(field: dict[str, Any]) -> str:
 def _parameters(row: dict[str, Any]) -> list[str]:
     """The arguments as in a signature; those with invalid Python names are positional only."""
     fields = row["fields"]
-    if row.get("signature"):
-        # Part of the language itself: some take any number of arguments, or words before them.
-        return ["*args: object"]
+    if row["in_run"]:
+        # Some take any number of arguments, or words before them.
+        by_name = [f["name"] for f in fields if not f["required"] and not f["variadic"]]
+        return ["*args: object", *(f"{python_name(name)}: object = ..." for name in by_name)]
     lines: list[str] = []
     by_name: list[str] = []
     if row["is_kind"]:

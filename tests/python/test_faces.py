@@ -21,8 +21,8 @@ from moldloft.language import python_name
 from moldloft.workbench.frames import head_of
 
 ROWS: dict[str, dict[str, Any]] = {row["name"]: row for row in _core.reference()}
-#: Rows with arguments of classes; those of the interpreter have a signature instead.
-TYPED = {name: row for name, row in ROWS.items() if "signature" not in row}
+#: Rows whose arguments have classes; those of the interpreter are evaluated by their bodies.
+TYPED = {name: row for name, row in ROWS.items() if not row["in_run"]}
 
 Argument = tuple[str, bool, object]
 
@@ -158,7 +158,7 @@ def test_the_page_s_forms() -> None:
 
 def test_the_language() -> None:
     """A named argument of each row is known, another one is not."""
-    for name, row in TYPED.items():
+    for name, row in ROWS.items():
         if name == "curvature":
             # Without its curve it may be that of the points of an array, `curvatures`.
             continue

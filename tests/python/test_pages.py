@@ -239,15 +239,6 @@ def test_every_argument_in_the_reference_has_a_meaning() -> None:
         if len(field["help"].removeprefix("Filled by the routine.").strip()) < 3
     ]
     assert not bare
-    # What a signature names in its parentheses is explained.
-    unsaid = [
-        (row["name"], word)
-        for row in reference()
-        if row.get("signature") and row["class"] != "value"
-        for word in re.findall(r"[(,] *([a-z]+)\d*(?=[,)\[])", row["signature"].split("), ")[0])
-        if word not in {field["name"] for field in row["fields"]}
-    ]
-    assert not unsaid
 
 
 def test_an_example_calls_what_it_is_the_example_of() -> None:

@@ -19,7 +19,7 @@ pub mod run;
 pub mod source;
 pub mod value;
 
-pub use functions::builtins::{BUILTINS, Builtin, MOST_REFINED};
+pub use functions::builtins::MOST_REFINED;
 pub use run::inserted::{INSERTED_FILES, InsertedFile};
 pub use source::env::{Evaluation, Param, SolveStatus};
 pub use source::{
@@ -50,5 +50,6 @@ pub fn registry() -> Registry {
     let rows = rows.chain(moldloft_arrays::rows());
     let own =
         [model_file::header::row(), run::solve_set::row()].into_iter().chain(run::weight::rows());
-    Registry::new(rows.chain(functions::elementary::rows()).chain(own))
+    let rows = rows.chain(functions::elementary::rows()).chain(own);
+    Registry::new(rows.chain(functions::builtins::rows()))
 }

@@ -1,6 +1,6 @@
 //! The registry as data.
 
-use moldloft::rows::{DefaultValue, FieldSpec, Row};
+use moldloft::rows::{DefaultValue, FieldSpec, Implementation, Row};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
@@ -8,8 +8,7 @@ use pyo3::types::PyDict;
 #[pyfunction]
 pub fn reference(py: Python<'_>) -> PyResult<Vec<Bound<'_, PyDict>>> {
     let registry = moldloft::document::registry();
-    let rows = registry.rows().map(|row| describe(py, row));
-    rows.chain(moldloft::lang::BUILTINS.iter().map(|b| describe_builtin(py, b))).collect()
+    registry.rows().map(|row| describe(py, row)).collect()
 }
 
 /// The named arguments that every kind takes besides its own.
@@ -45,47 +44,13 @@ pub fn statements(py: Python<'_>) -> PyResult<Vec<Bound<'_, PyDict>>> {
     moldloft::lang::INSERTED_FILES.iter().map(describe).collect()
 }
 
-/// A function of the language itself, with the signature of its arguments.
-fn describe_builtin<'py>(
-    py: Python<'py>,
-    builtin: &moldloft::lang::Builtin,
-) -> PyResult<Bound<'py, PyDict>> {
-    let dict = PyDict::new(py);
-    dict.set_item("name", builtin.name)?;
-    dict.set_item("class", builtin.returns)?;
-    dict.set_item("is_kind", false)?;
-    dict.set_item("summary", builtin.doc)?;
-    dict.set_item("doc", format!("{}\n\nCalled as `{}`.", builtin.doc, builtin.signature()))?;
-    dict.set_item("signature", builtin.signature())?;
-    let fields: PyResult<Vec<_>> = builtin
-        .help
-        .iter()
-        .map(|&(name, class, help)| {
-            let dict = PyDict::new(py);
-            dict.set_item("name", name.trim_end_matches('?'))?;
-            dict.set_item("class", class.trim_end_matches(" …"))?;
-            dict.set_item("many", class.ends_with('…'))?;
-            dict.set_item("required", !name.ends_with('?'))?;
-            for key in ["default", "min", "max"] {
-                dict.set_item(key, py.None())?;
-            }
-            dict.set_item("help", help)?;
-            dict.set_item("variadic", class.ends_with('…'))?;
-            Ok(dict)
-        })
-        .collect();
-    dict.set_item("fields", fields?)?;
-    dict.set_item("columns", py.None())?;
-    dict.set_item("example", builtin.example)?;
-    Ok(dict)
-}
-
 fn describe<'py>(py: Python<'py>, row: &Row) -> PyResult<Bound<'py, PyDict>> {
     let fields: PyResult<Vec<_>> = row.fields.iter().map(|field| argument(py, field)).collect();
     let dict = PyDict::new(py);
     dict.set_item("name", row.name.as_ref())?;
     dict.set_item("class", row.class.name())?;
     dict.set_item("is_kind", row.kind)?;
+    dict.set_item("in_run", matches!(row.body, Implementation::Foreign(_)))?;
     dict.set_item("summary", row.summary())?;
     dict.set_item("doc", row.doc.as_ref())?;
     dict.set_item("fields", fields?)?;

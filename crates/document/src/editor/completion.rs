@@ -3,12 +3,11 @@
 use super::mentions::mentions;
 use super::{row_signature, signature};
 use crate::document::Document;
-use moldloft_lang::BUILTINS;
 use moldloft_lang::run::inserted::INSERTED_FILES;
 use moldloft_lang::source::module::RoutineAt;
 use moldloft_lang::source::scope::Binding;
 use moldloft_lang::value::variables::shape_text;
-use moldloft_registry::FieldSpec;
+use moldloft_registry::{Class, FieldSpec, Implementation};
 use moldloft_syntax::sdl::{self, OpenCall, RoutineId};
 use std::sync::Arc;
 
@@ -137,9 +136,6 @@ impl Document {
         for row in &INSERTED_FILES {
             add(row.name, CompletionKind::Kind, row.signature.into());
         }
-        for builtin in BUILTINS {
-            add(builtin.name, CompletionKind::Function, builtin.signature());
-        }
         for keyword in moldloft_syntax::sdl::keywords() {
             add(keyword, CompletionKind::Keyword, String::new());
         }
@@ -154,9 +150,6 @@ impl Document {
             return false;
         }
         let Some(call) = sdl::call_around(before, offset) else { return true };
-        if let Some(builtin) = BUILTINS.iter().find(|b| b.name == call.callee) {
-            return builtin.names_file(call.argument);
-        }
         if INSERTED_FILES.iter().any(|row| row.name == call.callee) {
             return call.argument == 0;
         }
@@ -165,19 +158,6 @@ impl Document {
 
     /// The permitted words that the documentation of a text argument lists.
     fn quoted_words(&self, call: Option<&OpenCall>, prefix: &str) -> Vec<Completion> {
-        let builtin =
-            call.and_then(|call| Some((BUILTINS.iter().find(|b| b.name == call.callee)?, call)));
-        if let Some((builtin, call)) = builtin {
-            return builtin
-                .words(call.argument)
-                .filter(|word| word.starts_with(prefix))
-                .map(|word| Completion {
-                    word: word.into(),
-                    kind: CompletionKind::Word,
-                    detail: builtin.signature(),
-                })
-                .collect();
-        }
         let help = call.and_then(|call| self.field(call)).map_or("", |f| f.help);
         let mut found: Vec<Completion> = Vec::new();
         // Of a text split at quotation marks, every second part is quoted.
@@ -198,7 +178,13 @@ impl Document {
             Some(name) => row.fields.iter().find(|f| f.name == name),
             None => row.fields.get(call.argument).or(row.fields.last().filter(|f| f.variadic)),
         };
-        field.copied()
+        // Functions of the run take texts before and behind repeated arguments.
+        let text = |of: &&FieldSpec| of.class == Class::Text;
+        let displaced = call.argument > 0 && matches!(row.body, Implementation::Foreign(_));
+        match field.filter(text) {
+            None if displaced => row.fields.iter().rfind(text).copied(),
+            _ => field.copied(),
+        }
     }
 }
 

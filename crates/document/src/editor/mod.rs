@@ -14,7 +14,6 @@ pub use workspace::{Workspace, WorkspacePlace};
 use crate::document::Document;
 use mentions::{Mention, mentions};
 use moldloft_diag::{FileId, Span};
-use moldloft_lang::BUILTINS;
 use moldloft_lang::run::inserted::INSERTED_FILES;
 use moldloft_lang::source::module::{Module, RoutineAt};
 use moldloft_lang::source::scope::Binding;
@@ -80,9 +79,7 @@ impl Document {
 
     /// True for the name of a kind, a function or a statement.
     pub fn is_reserved(&self, name: &str) -> bool {
-        self.registry().get(name).is_some()
-            || BUILTINS.iter().any(|b| b.name == name)
-            || INSERTED_FILES.iter().any(|row| row.name == name)
+        self.registry().get(name).is_some() || INSERTED_FILES.iter().any(|row| row.name == name)
     }
 
     /// Description of the name at an offset, in Markdown, and the span of the name.
@@ -147,9 +144,7 @@ impl Document {
             let text = format!("```sdl\n{}\n```\n{}", row.signature, row.doc);
             return Some((text, mention.span));
         }
-        let builtin = BUILTINS.iter().find(|b| b.name == word)?;
-        let text = format!("```sdl\n{}\n```\n{}", builtin.signature(), builtin.doc);
-        Some((text, mention.span))
+        None
     }
 
     /// The routines, objects, parameters and variables declared in the main file: name, kind, and

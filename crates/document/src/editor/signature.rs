@@ -4,7 +4,6 @@
 use super::mentions::mentions;
 use super::{row_signature, signature};
 use crate::document::Document;
-use moldloft_lang::BUILTINS;
 use moldloft_lang::run::inserted::INSERTED_FILES;
 use moldloft_lang::source::module::RoutineAt;
 use moldloft_syntax::sdl::{self, ExprKind};
@@ -70,19 +69,13 @@ impl Document {
         let known = symbol.and_then(|symbol| {
             self.plain.env.scope.routines.get(module.names.get(symbol.0 as usize)?)
         });
-        if let Some(&RoutineAt { module, routine }) = known {
-            let m = self.modules.get(module);
-            let routine = m.program[routine];
-            let formals = m.program[routine.formals].iter();
-            let arguments = formals.map(|f| (m.program.name(f.name.symbol).into(), String::new()));
-            let doc = super::comment_above(m.program.text(), routine.span.start as usize);
-            return Some((signature(m, &routine), doc, arguments.collect()));
-        }
-        let builtin = BUILTINS.iter().find(|b| b.name == callee)?;
-        let arguments = builtin.help.iter();
-        let arguments =
-            arguments.map(|(name, _, help)| (name.trim_end_matches('?').into(), (*help).into()));
-        Some((builtin.signature(), builtin.doc.into(), arguments.collect()))
+        let &RoutineAt { module, routine } = known?;
+        let m = self.modules.get(module);
+        let routine = m.program[routine];
+        let formals = m.program[routine.formals].iter();
+        let arguments = formals.map(|f| (m.program.name(f.name.symbol).into(), String::new()));
+        let doc = super::comment_above(m.program.text(), routine.span.start as usize);
+        Some((signature(m, &routine), doc, arguments.collect()))
     }
 
     /// Names of positional arguments between two byte offsets, where the value does not explain

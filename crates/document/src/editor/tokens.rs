@@ -2,8 +2,8 @@
 
 use super::mentions::mentions;
 use crate::document::Document;
+use moldloft_lang::run::inserted::INSERTED_FILES;
 use moldloft_lang::source::scope::Binding;
-use moldloft_lang::{BUILTINS, run::inserted::INSERTED_FILES};
 use moldloft_syntax::sdl::Symbol;
 use std::collections::HashMap;
 
@@ -99,6 +99,6 @@ impl Document {
         if INSERTED_FILES.iter().any(|row| row.name == word) {
             return Some(NameRole::Kind);
         }
-        BUILTINS.iter().any(|b| b.name == word).then_some(NameRole::Function)
+        None
     }
 }

@@ -533,11 +533,76 @@ fn examples_of_the_libraries_run() {
 
 #[test]
 fn examples_of_built_in_functions_run() {
-    for builtin in moldloft_lang::BUILTINS {
-        let document = run(builtin.example);
-        assert!(builtin.example.contains(&format!("{}(", builtin.name)), "{}", builtin.name);
+    for row in moldloft_lang::functions::builtins::rows() {
+        let document = run(&row.example);
+        assert!(row.example.contains(&format!("{}(", row.name)), "{}", row.name);
         let found = reported(&document);
-        assert!(found.is_empty(), "{}: {found:?}", builtin.name);
+        assert!(found.is_empty(), "{}: {found:?}", row.name);
+    }
+}
+
+/// Quoted words of a text, as completion offers them.
+fn quoted(help: &str) -> Vec<&str> {
+    help.split('"').skip(1).step_by(2).collect()
+}
+
+#[test]
+fn words_that_arguments_list_are_taken() {
+    let grid = "surface s[2,2]; s[1,] = {{0,0,0}, {0,1,0}}; s[2,] = {{1,0,0}, {1,1,0}};";
+    for row in moldloft_lang::functions::builtins::rows() {
+        for field in row.fields.iter().filter(|f| ["words", "view", "faces"].contains(&f.name)) {
+            let words = quoted(field.help);
+            assert!(!words.is_empty(), "{} {}", row.name, field.name);
+            for word in words {
+                let (file, name) = (if row.name == "plot" { "a.svg" } else { "a" }, &row.name);
+                let call = match field.name {
+                    "faces" if *name == "interfaces" => continue,
+                    "faces" => format!("{name}(\"a.ugrid\", b, \"k1 = n {word}\");"),
+                    _ => format!("{name}(\"{file}\", \"{word}\", s);"),
+                };
+                let text = format!("{grid} block b = {{s, s + {{0,0,1}}}}; {call}");
+                let document = Document::from_text(registry(), Box::new(NoFiles), "p.sdl", &text);
+                assert!(document.diagnostics().iter().all(|d| d.id != "unknown-word"), "{call}");
+            }
+        }
+    }
+}
+
+#[test]
+fn functions_of_the_run_take_named_arguments() {
+    let grid = "surface s[3,2] = {1, 2, 3};";
+    let written = |call: &str| {
+        let document = run(&format!("{grid} {call}"));
+        assert!(reported(&document).is_empty(), "{call} {:?}", reported(&document));
+        document.written().map(|(_, bytes)| bytes.to_vec()).collect::<Vec<_>>()
+    };
+    let text = written("write_p3d(\"s.x\", \"text\", s, s);");
+    for call in [
+        "write_p3d(\"s.x\", s, s, words = \"text\");",
+        "write_p3d(words = \"text\", name = \"s.x\", s = {s, s});",
+    ] {
+        assert_eq!(written(call), text, "{call}");
+    }
+    let file = written("file f = open(\"a.txt\", \"w\"); write(f, 1, 2); close(f);");
+    for call in [
+        "open(\"a.txt\", unit = 7, mode = \"w\"); write(f = 7, values = {1, 2}); close(7);",
+        "open(7, \"a.txt\"); write(7, 1, 2); close(f = 7);",
+        "open(\"a.txt\", \"w\", 7); write(7, 1, 2); close(7);",
+    ] {
+        assert_eq!(written(call), file, "{call}");
+    }
+    for (call, wanted) in [
+        ("write_p3d(s = s);", "missing-argument"),
+        ("write_p3d(\"s.x\");", "missing-argument"),
+        ("write_vts(\"s.x\", s, s = s);", "argument-twice"),
+        ("write_vts(\"s.x\", name = \"t.x\");", "argument-twice"),
+        ("close(7, 8);", "too-many-arguments"),
+        ("write_vts(\"s.x\", t = s);", "unknown-argument"),
+    ] {
+        let text = format!("{grid} {call}");
+        let document = Document::from_text(registry(), Box::new(NoFiles), "p.sdl", &text);
+        let found = reported(&document);
+        assert!(document.diagnostics().iter().any(|d| d.id == wanted), "{call} {found:?}");
     }
 }
 
@@ -551,10 +616,9 @@ fn all_functions_are_there() {
         lengthc curvc project closest intersect intersections curvature torsion gauss mean normals tfi elliptic \
         hyperbolic quality report fair format open close read write write_p3d write_vts write_stl write_cgns \
         write_csv read_p3d read_points read_aerofoil count next more rewind";
-    let built_in: Vec<&str> = moldloft_lang::BUILTINS.iter().map(|b| b.name).collect();
     for name in names.split_whitespace() {
         let row = registry().rows().any(|row| row.name == name && !row.kind);
-        assert!(row || built_in.contains(&name), "{name}");
+        assert!(row, "{name}");
     }
     for (library, routines) in [
         (

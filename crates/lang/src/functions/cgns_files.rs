@@ -1,5 +1,6 @@
 //! CGNS files read: their zones as surfaces and blocks.
 
+use crate::functions::run_call::RunCall;
 use crate::run::interpreter::Interpreter;
 use crate::source::module::Module;
 use crate::value::variables::Called as _;
@@ -21,15 +22,12 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
     }
 
     /// `read_cgns("wing.cgns")`, `read_cgns("wing.cgns", 2)`, `read_cgns("wing.cgns", "upper")`.
-    pub(crate) fn read_cgns(
-        &mut self,
-        m: &Module,
-        given: &[ExprId],
-    ) -> Result<Value<T>, Diagnostic> {
-        let (path, zones) = self.zones(m, given[0])?;
-        let at = match given.get(1) {
+    pub(crate) fn read_cgns(&mut self, call: &RunCall<'_>) -> Result<Value<T>, Diagnostic> {
+        let m = call.m;
+        let (path, zones) = self.zones(m, call.first())?;
+        let at = match call.at(1) {
             None => Some(0),
-            Some(&arg) => match self.operand(m, arg)? {
+            Some(arg) => match self.operand(m, arg)? {
                 Value::Text(name) => {
                     let spelled = |zone: &NamedGrid| {
                         zone.name == *name || zone.name.strip_prefix("Z_") == Some(&*name)
@@ -63,20 +61,20 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         match at.and_then(|at| zones.get(at)) {
             Some(zone) => Ok(self.grid_value(&zone.grid)),
             None => Err(Diagnostic::error("outside", format!("`{path}` has no such zone"))
-                .at(m.program[*given.last().expect("the file is given")].span)
+                .at(m.program[call.at(1).unwrap_or(call.first())].span)
                 .expected(format!("a zone from 1 to {}", zones.len()))),
         }
     }
 
     /// `count_cgns("wing.cgns")`.
-    pub(crate) fn count_cgns(&mut self, m: &Module, file: ExprId) -> Result<Value<T>, Diagnostic> {
-        let (_, zones) = self.zones(m, file)?;
+    pub(crate) fn count_cgns(&mut self, call: &RunCall<'_>) -> Result<Value<T>, Diagnostic> {
+        let (_, zones) = self.zones(call.m, call.first())?;
         Ok(Value::Number(T::from(zones.len() as f64)))
     }
 
     /// `names_cgns("wing.cgns")`.
-    pub(crate) fn names_cgns(&mut self, m: &Module, file: ExprId) -> Result<Value<T>, Diagnostic> {
-        let (_, zones) = self.zones(m, file)?;
+    pub(crate) fn names_cgns(&mut self, call: &RunCall<'_>) -> Result<Value<T>, Diagnostic> {
+        let (_, zones) = self.zones(call.m, call.first())?;
         Ok(Value::list(zones.iter().map(|zone| Value::text(&zone.name))))
     }
 }

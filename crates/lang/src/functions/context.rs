@@ -1,9 +1,9 @@
 //! Functions that need more than the values of their arguments: the variable behind an argument,
 //! the files of the run, the requested refinement.
 
-use crate::functions::builtins::{Action, BUILTINS, Builtin};
 use crate::functions::files::{OpenMode, STANDARD_OUTPUT};
 use crate::functions::format::{self, FormatArgument};
+use crate::functions::run_call::{RunCall, SequenceUse};
 use crate::run::interpreter::{Interpreter, silent};
 use crate::source::module::Module;
 use crate::source::scope::{Binding, Passed};
@@ -14,44 +14,11 @@ use moldloft_model::Extent;
 use moldloft_num::{Real, Vec3};
 use moldloft_registry::{Array, ArrayShape, Row, Scalar, Value, Vectors};
 use moldloft_syntax::number;
-use moldloft_syntax::sdl::{Arg, ExprId, NodeList, Symbol, Type};
+use moldloft_syntax::sdl::{ExprId, Symbol, Type};
 use std::fmt::Write;
 use std::sync::Arc;
 
 type Evaluated<T> = Result<Value<T>, Diagnostic>;
-
-/// The arguments of a call in the order of the function's: positional ones, then those by name.
-fn in_order(m: &Module, builtin: &Builtin, args: NodeList<Arg>) -> Result<Vec<ExprId>, Diagnostic> {
-    let mut given: Vec<ExprId> = Vec::new();
-    let names: Vec<&str> = builtin.argument_names().collect();
-    for arg in &m.program[args] {
-        let Some(ident) = arg.name else {
-            given.push(arg.value);
-            continue;
-        };
-        let word = m.program.name(ident.symbol);
-        let fault = |id: &'static str, message: String| {
-            Diagnostic::error(id, message).at(ident.span).expected(builtin.signature())
-        };
-        match names.iter().position(|name| *name == word) {
-            Some(at) if at == given.len() => given.push(arg.value),
-            Some(at) if at < given.len() => {
-                let message = format!("`{word}` of {} is given twice", builtin.name);
-                return Err(fault("argument-twice", message));
-            }
-            Some(_) => {
-                let before = names[given.len()];
-                let message = format!("{} needs `{before}` before `{word}`", builtin.name);
-                return Err(fault("missing-argument", message));
-            }
-            None => {
-                let message = format!("{} has no argument `{word}`", builtin.name);
-                return Err(fault("unknown-argument", message).suggest(word, names));
-            }
-        }
-    }
-    Ok(given)
-}
 
 impl<T: Scalar> Interpreter<'_, '_, T> {
     /// The row of a function for a number of arguments; includes the misprint of `makecc` of 1992.
@@ -82,128 +49,101 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         Some(row)
     }
 
-    /// The value of a call of a built-in function; `None` for other names.
-    pub fn builtin(
-        &mut self,
-        m: &Module,
-        symbol: Symbol,
-        args: NodeList<Arg>,
-        span: Span,
-    ) -> Option<Evaluated<T>> {
-        let name = m.program.name(symbol);
-        let builtin = BUILTINS.iter().find(|b| b.name == name)?;
-        Some(self.builtin_of(m, builtin, args, span).map_err(|d| d.or_at(span)))
+    /// `format("%d", n)`.
+    pub(crate) fn formatted(&mut self, call: &RunCall<'_>) -> Evaluated<T> {
+        let m = call.m;
+        let pattern = self.text(m, call.first())?;
+        let mut items = Vec::new();
+        for arg in call.rest() {
+            let value = self.operand(m, arg)?;
+            flatten(&value, &mut items).map_err(|d| d.or_at(m.program[arg].span))?;
+        }
+        format::format(&pattern, &items).map(|text| Value::text(&text))
     }
 
-    fn builtin_of(
-        &mut self,
-        m: &Module,
-        builtin: &Builtin,
-        args: NodeList<Arg>,
-        span: Span,
-    ) -> Evaluated<T> {
-        let given = in_order(m, builtin, args)?;
-        let (least, most) = builtin.arity();
-        if !(least..=most).contains(&given.len()) {
-            let id = if given.len() < least { "missing-argument" } else { "too-many-arguments" };
-            let message = format!("invalid arguments of {}", builtin.name);
-            return Err(Diagnostic::error(id, message)
-                .at(span)
-                .expected(builtin.signature())
-                .found(format!("{} arguments", given.len())));
+    /// `close(f)`.
+    pub(crate) fn close_file(&mut self, call: &RunCall<'_>) -> Evaluated<T> {
+        let unit = self.unit(call.m, call.first())?;
+        self.env.files.close(unit).map(|()| Value::Unset)
+    }
+
+    /// `write(f, a, b)`.
+    pub(crate) fn write_values(&mut self, call: &RunCall<'_>) -> Evaluated<T> {
+        let m = call.m;
+        let unit = self.unit(m, call.first())?;
+        let mut text = String::new();
+        for arg in call.rest() {
+            let value = self.operand(m, arg)?;
+            lines(&value, &mut text).map_err(|d| d.or_at(m.program[arg].span))?;
+            self.charge(&value, m.program[arg].span)?;
         }
-        match builtin.action {
-            Action::Format => {
-                let pattern = self.text(m, given[0])?;
-                let mut items = Vec::new();
-                for &arg in &given[1..] {
-                    let value = self.operand(m, arg)?;
-                    flatten(&value, &mut items).map_err(|d| d.or_at(m.program[arg].span))?;
-                }
-                format::format(&pattern, &items).map(|text| Value::text(&text))
+        if unit == STANDARD_OUTPUT || unit == 0 {
+            for line in text.lines() {
+                self.print(line.to_string(), call.span)?;
             }
-            Action::Open => self.open(m, &given),
-            Action::Close => {
-                let unit = self.unit(m, given[0])?;
-                self.env.files.close(unit).map(|()| Value::Unset)
-            }
-            Action::Write => {
-                let unit = self.unit(m, given[0])?;
-                let mut text = String::new();
-                for &arg in &given[1..] {
-                    let value = self.operand(m, arg)?;
-                    lines(&value, &mut text).map_err(|d| d.or_at(m.program[arg].span))?;
-                    self.charge(&value, m.program[arg].span)?;
-                }
-                if unit == STANDARD_OUTPUT || unit == 0 {
-                    for line in text.lines() {
-                        self.print(line.to_string(), span)?;
-                    }
-                    return Ok(Value::Unset);
-                }
-                self.env.files.write(unit, &text).map(|()| Value::Unset)
-            }
-            Action::Read => {
-                let unit = self.unit(m, given[0])?;
-                for &arg in &given[1..] {
-                    let place = self.place(m, arg)?;
-                    let value = self.read_place(unit, &place)?;
-                    self.charge(&value, m.program[arg].span)?;
-                    self.store(place, value).map_err(|d| d.or_at(m.program[arg].span))?;
-                }
-                Ok(Value::Unset)
-            }
-            Action::More | Action::Next | Action::Rewind | Action::Count => {
-                self.sequence(m, builtin, given[0])
-            }
-            Action::IsSet => {
-                let place = self.place(m, given[0])?;
-                let (_, value, known) = self.known(&place)?;
-                let set = match shape_of(value) {
-                    Some(shape) if place.path.is_empty() => {
-                        known.has(shape, place.section.unwrap_or(ArraySection::whole(shape)))
-                    }
-                    _ => !matches!(value, Value::Unset),
-                };
-                Ok(Value::Number(T::from(f64::from(u8::from(set)))))
-            }
-            Action::Ieee => {
-                self.arrays.ieee = match given.first() {
-                    Some(&arg) => self.number(m, arg)?.re() != 0.0,
-                    None => true,
-                };
-                Ok(Value::Unset)
-            }
-            Action::CheckEdges => self.check_edges(m, given[0]).map(|()| Value::Unset),
-            Action::Refined => {
-                let n = self.whole(m, given[0])?;
-                let fine = (n - 1.0) * self.parts() + 1.0;
-                if self.parts() > 1.0 {
-                    self.refined.counts.insert(fine.to_bits(), n);
-                }
-                Ok(Value::Number(T::from(fine)))
-            }
-            Action::RefinedStep => {
-                let step = self.number(m, given[0])?;
-                let fine = step / self.parts();
-                if self.parts() > 1.0 {
-                    self.refined.steps.insert(fine.re().to_bits(), step);
-                }
-                Ok(Value::Number(fine))
-            }
-            Action::Refinement => Ok(Value::Number(T::from(self.parts()))),
-            Action::WriteGrids(format) => {
-                self.write_grids(m, (builtin.name, format), &given).map(|()| Value::Unset)
-            }
-            Action::Interfaces => self.interfaces(m, builtin.name, &given),
-            Action::ReadPlot3d => self.read_p3d(m, &given),
-            Action::BlankingPlot3d => self.iblank_p3d(m, &given),
-            Action::CountPlot3d => self.count_p3d(m, given[0]),
-            Action::ReadCgns => self.read_cgns(m, &given),
-            Action::CountCgns => self.count_cgns(m, given[0]),
-            Action::NamesCgns => self.names_cgns(m, given[0]),
-            Action::ReadRows(format) => self.read_rows(m, format, &given),
+            return Ok(Value::Unset);
         }
+        self.env.files.write(unit, &text).map(|()| Value::Unset)
+    }
+
+    /// `read(f, a, b[1,])`.
+    pub(crate) fn read_values(&mut self, call: &RunCall<'_>) -> Evaluated<T> {
+        let m = call.m;
+        let unit = self.unit(m, call.first())?;
+        for arg in call.rest() {
+            let place = self.place(m, arg)?;
+            let value = self.read_place(unit, &place)?;
+            self.charge(&value, m.program[arg].span)?;
+            self.store(place, value).map_err(|d| d.or_at(m.program[arg].span))?;
+        }
+        Ok(Value::Unset)
+    }
+
+    /// `isset(a)`.
+    pub(crate) fn is_set(&mut self, call: &RunCall<'_>) -> Evaluated<T> {
+        let place = self.place(call.m, call.first())?;
+        let (_, value, known) = self.known(&place)?;
+        let set = match shape_of(value) {
+            Some(shape) if place.path.is_empty() => {
+                known.has(shape, place.section.unwrap_or(ArraySection::whole(shape)))
+            }
+            _ => !matches!(value, Value::Unset),
+        };
+        Ok(Value::Number(T::from(f64::from(u8::from(set)))))
+    }
+
+    /// `ieee()`, `ieee(0)`.
+    pub(crate) fn ieee(&mut self, call: &RunCall<'_>) -> Evaluated<T> {
+        self.arrays.ieee = match call.at(0) {
+            Some(arg) => self.number(call.m, arg)?.re() != 0.0,
+            None => true,
+        };
+        Ok(Value::Unset)
+    }
+
+    /// `refined(n)`.
+    pub(crate) fn refined_count(&mut self, call: &RunCall<'_>) -> Evaluated<T> {
+        let n = self.whole(call.m, call.first())?;
+        let fine = (n - 1.0) * self.parts() + 1.0;
+        if self.parts() > 1.0 {
+            self.refined.counts.insert(fine.to_bits(), n);
+        }
+        Ok(Value::Number(T::from(fine)))
+    }
+
+    /// `refined_step(ds)`.
+    pub(crate) fn refined_step(&mut self, call: &RunCall<'_>) -> Evaluated<T> {
+        let step = self.number(call.m, call.first())?;
+        let fine = step / self.parts();
+        if self.parts() > 1.0 {
+            self.refined.steps.insert(fine.re().to_bits(), step);
+        }
+        Ok(Value::Number(fine))
+    }
+
+    /// `refinement()`.
+    pub(crate) fn refinement(&mut self, _: &RunCall<'_>) -> Evaluated<T> {
+        Ok(Value::Number(T::from(self.parts())))
     }
 
     fn parts(&self) -> f64 {
@@ -245,26 +185,23 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
     }
 
     /// `open("name", "w")`, `open(7, "name")`, `open(7, "name", "r")`.
-    fn open(&mut self, m: &Module, given: &[ExprId]) -> Evaluated<T> {
-        let first = self.operand(m, given[0])?;
-        let (unit, rest) = match first {
-            Value::Number(_) => (Some(self.unit(m, given[0])?), &given[1..]),
-            _ => match given {
-                &[_, _, unit] => (Some(self.unit(m, unit)?), &given[..2]),
-                _ => (None, given),
-            },
-        };
-        let (Some(&name), true) = (rest.first(), rest.len() <= 2) else {
+    pub(crate) fn open_file(&mut self, call: &RunCall<'_>) -> Evaluated<T> {
+        let m = call.m;
+        let unit_first = matches!(self.operand(m, call.first())?, Value::Number(_));
+        let places = if unit_first { [1, 2, 0] } else { [0, 1, 2] };
+        let [name, mode, unit] = places.map(|field| call.at(field));
+        let Some(name) = name else {
             return Err(Diagnostic::error("missing-argument", "open needs the name of a file")
                 .expected("open(\"name\", \"w\") or open(7, \"name\")"));
         };
+        let unit = unit.map(|unit| self.unit(m, unit)).transpose()?;
         let path = self.text(m, name)?;
-        let mode = match rest.get(1) {
-            Some(&mode) => {
+        let mode = match mode {
+            Some(mode) => {
                 let word = self.text(m, mode)?;
                 OpenMode::parse(&word).map_err(|d| d.or_at(m.program[mode].span))?
             }
-            None if unit.is_some() => OpenMode::Write,
+            None if unit_first => OpenMode::Write,
             None => OpenMode::Read,
         };
         if mode != OpenMode::Read && self.run.extent() == Extent::Edit {
@@ -354,7 +291,8 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
     }
 
     /// `count(c)`, `next(c)`, `more(c)`, `rewind(c)`.
-    fn sequence(&mut self, m: &Module, builtin: &Builtin, arg: ExprId) -> Evaluated<T> {
+    pub(crate) fn sequence(&mut self, call: &RunCall<'_>, to: SequenceUse) -> Evaluated<T> {
+        let (m, arg) = (call.m, call.first());
         let name = m.program.as_name(arg).map(|symbol| m.names[symbol.0 as usize]);
         let multiple = name.and_then(|name| match &self.env.scope.lookup(name)?.what {
             Binding::Multiple(multiple) => Some((name, multiple.items.len(), multiple.read)),
@@ -362,7 +300,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         });
         let flag = |holds: bool| Value::Number(T::from(f64::from(u8::from(holds))));
         let Some((name, all, read)) = multiple else {
-            if matches!(builtin.action, Action::Count) {
+            if to == SequenceUse::Count {
                 let value = self.operand(m, arg)?;
                 match &*moldloft_arrays::gathered(&value) {
                     Value::Numbers(a) => {
@@ -373,24 +311,24 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                     _ => {}
                 }
             }
-            if matches!(builtin.action, Action::Count | Action::Next) {
+            if matches!(to, SequenceUse::Count | SequenceUse::Next) {
                 return Err(Diagnostic::error(
                     "wrong-type",
-                    format!("{} reads a multiple argument", builtin.name),
+                    format!("{} reads a multiple argument", call.row.name),
                 )
                 .at(m.program[arg].span)
                 .expected("the last argument of a subroutine, declared as `curve c...`"));
             }
             let unit = self.unit(m, arg)?;
-            return match builtin.action {
-                Action::More => self.env.files.more(unit).map(flag),
+            return match to {
+                SequenceUse::More => self.env.files.more(unit).map(flag),
                 _ => self.env.files.rewind(unit).map(|()| Value::Unset),
             };
         };
-        match builtin.action {
-            Action::Count => Ok(Value::Number(T::from(all as f64))),
-            Action::More => Ok(flag(read < all)),
-            Action::Rewind => {
+        match to {
+            SequenceUse::Count => Ok(Value::Number(T::from(all as f64))),
+            SequenceUse::More => Ok(flag(read < all)),
+            SequenceUse::Rewind => {
                 self.set_read(name, 0);
                 Ok(Value::Unset)
             }
@@ -425,8 +363,8 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
     }
 
     /// That the edges of a surface are there and meet at its corners.
-    fn check_edges(&mut self, m: &Module, arg: ExprId) -> Result<(), Diagnostic> {
-        let place = self.place(m, arg)?;
+    pub(crate) fn check_edges(&mut self, call: &RunCall<'_>) -> Evaluated<T> {
+        let place = self.place(call.m, call.first())?;
         let tolerance = self.run.graph().context().tolerance;
         let (_, value, known) = self.known(&place)?;
         let name = self.modules.text(place.name);
@@ -477,7 +415,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                     .help("move the end of one edge to the other's before filling"));
             }
         }
-        Ok(())
+        Ok(Value::Unset)
     }
 }
 

@@ -3,12 +3,12 @@
 //! Files are whole: each call writes one, into the set that the host commits.
 
 use crate::functions::block_files::face_names;
-use crate::functions::builtins::RowFormat;
 use crate::functions::grid_checks;
 use crate::functions::grid_formats::{CONNECTIONS, GridFile, GridFormat};
 use crate::functions::grid_values::grid_of;
 use crate::functions::joint_report::joint_report;
 use crate::functions::named_blocks::NamedBlock;
+use crate::functions::run_call::RunCall;
 use crate::run::interpreter::{Interpreter, silent};
 use crate::source::module::Module;
 use crate::value::variables;
@@ -23,6 +23,13 @@ use moldloft_syntax::sdl::ExprId;
 use std::sync::Arc;
 
 type Evaluated<T> = Result<Value<T>, Diagnostic>;
+
+/// Formats that are read as a curve.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum RowFormat {
+    Points,
+    Aerofoil,
+}
 
 /// Arguments of a call of `write_...`, collected.
 #[derive(Default)]
@@ -108,21 +115,20 @@ impl TakenIn {
 }
 
 impl<T: Scalar> Interpreter<'_, '_, T> {
-    /// Writes the grids given behind the name of a file and its words; `name` is the function's.
+    /// Writes the grids given behind the name of a file and its words.
     pub(crate) fn write_grids(
         &mut self,
-        m: &Module,
-        (name, format): (&str, &'static GridFormat),
-        given: &[ExprId],
-    ) -> Result<(), Diagnostic> {
+        call: &RunCall<'_>,
+        format: &'static GridFormat,
+    ) -> Evaluated<T> {
         if self.run.extent() == Extent::Edit {
             let message = "a queried expression cannot write files";
             return Err(Diagnostic::error("misplaced-assignment", message)
                 .expected("an expression that reads the program's variables"));
         }
-        let path = self.text(m, given[0])?;
-        let at_name = m.program[given[0]].span;
-        let (blocks, words) = self.taken_grids(m, (name, format), &given[1..], at_name)?;
+        let path = self.text(call.m, call.first())?;
+        let at_name = call.m.program[call.first()].span;
+        let (blocks, words) = self.taken_grids(call, format, call.rest(), at_name)?;
         let (words, words_at) = words.unwrap_or(("".into(), at_name));
         let count: usize = blocks.iter().map(|block| block.grid.count()).sum();
         let (file, text) = (path.to_string(), words.to_string());
@@ -148,20 +154,21 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         for (name, bytes) in encoded.map_err(place)? {
             self.env.files.put(&name, bytes).map_err(place)?;
         }
-        Ok(())
+        Ok(Value::Unset)
     }
 
     /// The grids given to a function, with the names of their boundaries; and the words before them, with their place.
     fn taken_grids(
         &mut self,
-        m: &Module,
-        (name, format): (&str, &'static GridFormat),
-        given: &[ExprId],
+        call: &RunCall<'_>,
+        format: &'static GridFormat,
+        given: impl Iterator<Item = ExprId>,
         at: Span,
     ) -> Result<(Vec<NamedBlock>, Option<(Arc<str>, Span)>), Diagnostic> {
         let mut words = None;
         let mut taken = TakenIn::default();
-        for (k, &arg) in given.iter().enumerate() {
+        let m = call.m;
+        for (k, arg) in given.enumerate() {
             let span = m.program[arg].span;
             let value = self.operand(m, arg)?;
             self.charge(&value, span)?;
@@ -196,7 +203,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         if taken.blocks.is_empty() {
             return Err(Diagnostic::error(
                 "missing-argument",
-                format!("{name} has nothing to write"),
+                format!("{} has nothing to write", call.row.name),
             )
             .at(at)
             .expected("a curve or a surface"));
@@ -205,9 +212,10 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
     }
 
     /// `interfaces(b1, "k1 = hull wall", b2)`: connections and boundaries of blocks.
-    pub(crate) fn interfaces(&mut self, m: &Module, name: &str, given: &[ExprId]) -> Evaluated<T> {
-        let at = m.program[given[0]].span;
-        let (blocks, words) = self.taken_grids(m, (name, &CONNECTIONS), given, at)?;
+    pub(crate) fn interfaces(&mut self, call: &RunCall<'_>) -> Evaluated<T> {
+        let at = call.m.program[call.first()].span;
+        let given = std::iter::once(call.first()).chain(call.rest());
+        let (blocks, words) = self.taken_grids(call, &CONNECTIONS, given, at)?;
         if let Some((_, span)) = words {
             return Err(Diagnostic::error("wrong-type", "a text names the boundaries of no block")
                 .at(span)
@@ -247,18 +255,18 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
     /// A block of a Plot3D file, and the file's name.
     fn plot3d_block(
         &mut self,
-        m: &Module,
-        given: &[ExprId],
+        call: &RunCall<'_>,
     ) -> Result<(Arc<str>, StructuredGrid), Diagnostic> {
-        let (path, bytes) = self.bytes_of(m, given[0])?;
+        let m = call.m;
+        let (path, bytes) = self.bytes_of(m, call.first())?;
         let unreadable = |e: &dyn std::fmt::Display| {
             Diagnostic::error("cannot-read", format!("cannot read `{path}`: {e}"))
         };
         let blocks =
-            self.apart(bytes.len(), m.program[given[0]].span, move || plot3d::read(&bytes))?;
+            self.apart(bytes.len(), m.program[call.first()].span, move || plot3d::read(&bytes))?;
         let (mut blocks, _) = blocks.map_err(|e| unreadable(&e))?;
-        let number = match given.get(1) {
-            Some(&arg) => self.whole(m, arg)? as usize,
+        let number = match call.at(1) {
+            Some(arg) => self.whole(m, arg)? as usize,
             None => 1,
         };
         if number > blocks.len() {
@@ -271,13 +279,13 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
     }
 
     /// `read_p3d("body.x")`, `read_p3d("body.x", 2)`.
-    pub(crate) fn read_p3d(&mut self, m: &Module, given: &[ExprId]) -> Evaluated<T> {
-        let (path, block) = self.plot3d_block(m, given)?;
+    pub(crate) fn read_p3d(&mut self, call: &RunCall<'_>) -> Evaluated<T> {
+        let (path, block) = self.plot3d_block(call)?;
         let blanked = block.iblank.as_ref().is_some_and(|all| all.iter().any(|b| *b != 1));
         if blanked {
             let message = format!("`{path}` is read without its blanking");
             self.report(
-                Diagnostic::remark("blanked", message).at(m.program[given[0]].span).help(
+                Diagnostic::remark("blanked", message).at(call.m.program[call.first()].span).help(
                     "iblank_p3d(name, block) is the blanking, to be written behind the surface",
                 ),
             );
@@ -286,8 +294,8 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
     }
 
     /// `iblank_p3d("body.x")`, `iblank_p3d("body.x", 2)`: the blanking of a surface.
-    pub(crate) fn iblank_p3d(&mut self, m: &Module, given: &[ExprId]) -> Evaluated<T> {
-        let (path, block) = self.plot3d_block(m, given)?;
+    pub(crate) fn iblank_p3d(&mut self, call: &RunCall<'_>) -> Evaluated<T> {
+        let (path, block) = self.plot3d_block(call)?;
         let [ni, nj, nk] = block.size;
         let Some(iblank) = &block.iblank else {
             return Err(Diagnostic::error("cannot-read", format!("`{path}` has no blanking"))
@@ -318,7 +326,8 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
     }
 
     /// `count_p3d("body.x")`.
-    pub(crate) fn count_p3d(&mut self, m: &Module, file: ExprId) -> Evaluated<T> {
+    pub(crate) fn count_p3d(&mut self, call: &RunCall<'_>) -> Evaluated<T> {
+        let (m, file) = (call.m, call.first());
         let (path, bytes) = self.bytes_of(m, file)?;
         let blocks = self.apart(bytes.len(), m.program[file].span, move || plot3d::read(&bytes))?;
         let (blocks, _) = blocks
@@ -327,17 +336,13 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
     }
 
     /// The points of a text.
-    pub(crate) fn read_rows(
-        &mut self,
-        m: &Module,
-        format: RowFormat,
-        given: &[ExprId],
-    ) -> Evaluated<T> {
-        let (path, bytes) = self.bytes_of(m, given[0])?;
+    pub(crate) fn read_rows(&mut self, call: &RunCall<'_>, format: RowFormat) -> Evaluated<T> {
+        let (m, file) = (call.m, call.first());
+        let (path, bytes) = self.bytes_of(m, file)?;
         let unreadable = |e: &dyn std::fmt::Display| {
             Diagnostic::error("cannot-read", format!("cannot read `{path}`: {e}"))
         };
-        let points = self.apart(bytes.len(), m.program[given[0]].span, move || match format {
+        let points = self.apart(bytes.len(), m.program[file].span, move || match format {
             RowFormat::Points => points::read(&bytes).map(|table| table.rows),
             RowFormat::Aerofoil => section::read_aerofoil(&bytes).map(|section| section.points),
         })?;

@@ -49,8 +49,6 @@ pub(crate) struct GridFormat {
     pub keeps_order: bool,
     /// True if it checks the budget itself; others are watched from outside.
     pub watches: bool,
-    /// The words that it knows, as completion offers them.
-    pub words: &'static [&'static str],
     pub encode: fn(GridFile<'_>) -> Result<EncodedFiles, Diagnostic>,
 }
 
@@ -63,7 +61,6 @@ pub(crate) const PLAIN: GridFormat = GridFormat {
     hangs: false,
     keeps_order: false,
     watches: false,
-    words: &[],
     encode: csv,
 };
 
@@ -71,38 +68,15 @@ pub(crate) const PLAIN: GridFormat = GridFormat {
 const JOINED_MESH: GridFormat = GridFormat { blocks: true, joins: true, plane: true, ..PLAIN };
 
 /// `write_p3d`.
-pub(crate) static PLOT3D: GridFormat = GridFormat {
-    blocks: true,
-    blanking: true,
-    keeps_order: true,
-    words: &[
-        "stream",
-        "records",
-        "text",
-        "double",
-        "single",
-        "multi",
-        "single-block",
-        "3d",
-        "2d",
-        "whole",
-        "planes",
-        "little",
-        "big",
-        "iblank",
-        "mark8",
-    ],
-    encode: plot3d_file,
-    ..PLAIN
-};
+pub(crate) static PLOT3D: GridFormat =
+    GridFormat { blocks: true, blanking: true, keeps_order: true, encode: plot3d_file, ..PLAIN };
 
 /// `write_vts`.
 pub(crate) static VTS: GridFormat =
     GridFormat { blocks: true, keeps_order: true, encode: vts, ..PLAIN };
 
 /// `write_stl`.
-pub(crate) static STL: GridFormat =
-    GridFormat { watches: true, words: &["flip"], encode: stl_file, ..PLAIN };
+pub(crate) static STL: GridFormat = GridFormat { watches: true, encode: stl_file, ..PLAIN };
 
 /// `write_csv`.
 pub(crate) static CSV: GridFormat = PLAIN;
@@ -124,8 +98,7 @@ pub(crate) static SU2: GridFormat = GridFormat { encode: su2, ..JOINED_MESH };
 pub(crate) static GMSH: GridFormat = GridFormat { encode: gmsh, ..JOINED_MESH };
 
 /// `write_blockmesh`.
-pub(crate) static BLOCK_MESH: GridFormat =
-    GridFormat { words: &[GRADED], encode: block_mesh, ..JOINED_MESH };
+pub(crate) static BLOCK_MESH: GridFormat = GridFormat { encode: block_mesh, ..JOINED_MESH };
 
 /// `write_polymesh`.
 pub(crate) static POLY_MESH: GridFormat = GridFormat { encode: poly_mesh, ..JOINED_MESH };
@@ -143,13 +116,8 @@ pub(crate) static CONNECTIONS: GridFormat =
     GridFormat { hangs: true, keeps_order: true, ..JOINED_MESH };
 
 /// `plot`.
-pub(crate) static PICTURE: GridFormat = GridFormat {
-    blocks: true,
-    watches: true,
-    words: &["x", "y", "z", "-x", "-y", "-z", "iso"],
-    encode: picture,
-    ..PLAIN
-};
+pub(crate) static PICTURE: GridFormat =
+    GridFormat { blocks: true, watches: true, encode: picture, ..PLAIN };
 
 /// The words that choose a variant of Plot3D, the usual ones first.
 const VARIANTS: &str = "stream, records, text; double, single; multi, single-block; 3d, 2d; whole, planes; little, \

@@ -17,5 +17,6 @@ mod hanging;
 mod joint_report;
 pub mod named_blocks;
 pub mod plots;
+pub(crate) mod run_call;
 mod shape_measures;
 mod solver_conditions;

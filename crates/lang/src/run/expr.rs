@@ -1,5 +1,6 @@
 //! Runs a program: expressions.
 
+use crate::functions::builtins;
 use crate::run::interpreter::{Interpreter, silent};
 use crate::source::env::SolveUnknown;
 use crate::source::fault_location;
@@ -12,8 +13,8 @@ use moldloft_diag::{Diagnostic, Span};
 use moldloft_model::Failure;
 use moldloft_num::{Order, Vec3};
 use moldloft_registry::{
-    Array, ArrayShape, Class, CurveRef, Given, Role, Row, Scalar, SurfaceRef, Value, Vectors,
-    bind_arguments, many,
+    Array, ArrayShape, Class, CurveRef, Given, Implementation, Role, Row, Scalar, SurfaceRef,
+    Value, Vectors, bind_arguments, many,
 };
 use moldloft_syntax::number;
 use moldloft_syntax::sdl::{
@@ -557,12 +558,14 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         if let Some(&record) = self.env.scope.records.get(&name) {
             return self.new_record(m, record, args, span);
         }
-        if let Some(value) = self.builtin(m, symbol, args, span) {
-            return value;
-        }
         let Some(row) = self.row(m, symbol, args.len(), span) else {
             return Err(self.unknown_function(m, symbol).at(m.program[callee].span));
         };
+        if let Implementation::Foreign(_) = row.body
+            && let Some(body) = builtins::body(&row.name)
+        {
+            return self.call_in_run(m, (&row, body), args, span);
+        }
         self.call_row(m, row, args, span)
     }
 

@@ -1,7 +1,6 @@
 //! Runs a program: statements.
 
 use crate::array::machine::ArrayMachine;
-use crate::functions::builtins::BUILTINS;
 use crate::run::compiled::kept::ScalarCode;
 use crate::run::read_log::ReadLog;
 use crate::run::refined::RefinedNumbers;
@@ -854,7 +853,7 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
             .map(|&name| &**self.modules.text(name))
             .collect();
         own.sort_unstable();
-        let all = variables.chain(own).chain(BUILTINS.iter().map(|b| b.name)).chain(["PI"]);
+        let all = variables.chain(own).chain(["PI"]);
         // The first of equally near names.
         nearest(word, all.chain(functions)).map(str::to_string)
     }

@@ -6,7 +6,6 @@
 //! anywhere at file level in the loaded files, or anywhere in the routine: the pass reports no
 //! error in a program that would run correctly.
 
-use crate::functions::builtins::BUILTINS;
 use crate::functions::files::predeclared;
 use crate::run::declared_lists::declared_list;
 use crate::run::parts::{self, StatementParts};
@@ -190,7 +189,7 @@ impl<'a> Semantics<'a> {
         if routine.result.is_none() {
             return;
         }
-        if known || BUILTINS.iter().any(|b| b.name == word) {
+        if known {
             self.say(
                 Diagnostic::remark(
                     "redefined",
@@ -362,19 +361,6 @@ impl<'a> Semantics<'a> {
             return self.arity(m, routine, args, span);
         }
         if self.records.contains_key(&name) {
-            return;
-        }
-        if let Some(builtin) = BUILTINS.iter().find(|b| b.name == word) {
-            let (least, most) = builtin.arity();
-            if !(least..=most).contains(&args.len()) {
-                let id = if args.len() < least { "missing-argument" } else { "too-many-arguments" };
-                self.say(
-                    Diagnostic::warning(id, format!("invalid arguments of {word}"))
-                        .at(span)
-                        .expected(builtin.signature())
-                        .found(format!("{} arguments", args.len())),
-                );
-            }
             return;
         }
         match &m.rows[symbol.0 as usize] {

@@ -4,7 +4,6 @@ use super::code::{CodeArgument, CodeNote, CodeVariable, NO_LABEL, Poisonable, Sc
 use super::compile::{RegionCompiler, Unfit, relation};
 use super::names::Meaning;
 use super::vectors::CodeValue;
-use crate::functions::builtins::BUILTINS;
 use crate::functions::elementary::{self, Elementary};
 use crate::run::parts;
 use crate::source::module::Name;
@@ -349,9 +348,7 @@ impl<T: Scalar> RegionCompiler<'_, T> {
         }
         let given: Vec<ExprId> = m.program[args].iter().map(|arg| arg.value).collect();
         let row = m.rows[symbol.0 as usize].as_ref().ok_or(Unfit::Statement)?;
-        if !matches!(row.body, Implementation::Native { .. })
-            || BUILTINS.iter().any(|b| b.name == m.program.name(symbol))
-        {
+        if !matches!(row.body, Implementation::Native { .. }) {
             return Err(Unfit::Statement);
         }
         let span = m.program[id].span;
