@@ -59,6 +59,7 @@ WITHOUT = {
     "no-grid",
     "no-plane",
     "no-reverse",
+    "no-run",
     "no-text",
     "no-weights",
     "not-faired",

@@ -5155,8 +5155,6 @@ def format(
 ) -> AnyShape:
     """Formats numbers by C directives; the pattern repeats for the remaining values.
 
-    Called as `format(pattern, [values], ...)`.
-
     Parameters
     ----------
     pattern : text
@@ -5177,10 +5175,10 @@ def format(
     ...
 def open(
     *args: object,
-) -> AnyShape:
+    mode: object = ...,
+    unit: object = ...,
+) -> Expr:
     """Opens a text file to read ("r"), write ("w") or append ("a"); open(7, name) chooses the unit.
-
-    Called as `open(name, [mode], [unit])`.
 
     Parameters
     ----------
@@ -5193,7 +5191,7 @@ def open(
 
     Returns
     -------
-    file
+    integer
 
     Notes
     -----
@@ -5207,11 +5205,9 @@ def close(
 ) -> AnyShape:
     """Closes a file.
 
-    Called as `close(f)`.
-
     Parameters
     ----------
-    f : file
+    f : value
         The file, or its unit.
 
     Returns
@@ -5230,11 +5226,9 @@ def write(
 ) -> AnyShape:
     """Writes values to a file: a point or number on each line, the first index of a grid fastest.
 
-    Called as `write(f, [values], ...)`.
-
     Parameters
     ----------
-    f : file
+    f : value
         The file, its unit, or `stdout`.
     values : list of value, optional
         Texts, numbers, points and arrays, each from a new line.
@@ -5255,13 +5249,11 @@ def read(
 ) -> AnyShape:
     """Reads numbers into variables or parts of them; a string takes the rest of the line.
 
-    Called as `read(f, variables, ...)`.
-
     Parameters
     ----------
-    f : file
+    f : value
         The file, or its unit.
-    variables : list of variable
+    variables : list of value
         Variables, elements and sections to fill, in order.
 
     Returns
@@ -5280,11 +5272,9 @@ def more(
 ) -> Expr:
     """Reports whether a multiple argument, or a file, has unread items.
 
-    Called as `more(c)`.
-
     Parameters
     ----------
-    c : argument or file
+    c : value
         The multiple argument, or the file.
 
     Returns
@@ -5303,11 +5293,9 @@ def next(
 ) -> AnyShape:
     """The next item of a multiple argument.
 
-    Called as `next(c)`.
-
     Parameters
     ----------
-    c : argument
+    c : value
         The multiple argument.
 
     Returns
@@ -5326,11 +5314,9 @@ def rewind(
 ) -> AnyShape:
     """Returns to the first item of a multiple argument, or to the start of a file.
 
-    Called as `rewind(c)`.
-
     Parameters
     ----------
-    c : argument or file
+    c : value
         The multiple argument, or the file.
 
     Returns
@@ -5349,11 +5335,9 @@ def count(
 ) -> Expr:
     """The number of items of a multiple argument or a list; for a mask, the number of true elements.
 
-    Called as `count(c)`.
-
     Parameters
     ----------
-    c : argument, list or mask
+    c : value
         Multiple argument, list or mask.
 
     Returns
@@ -5372,11 +5356,9 @@ def isset(
 ) -> Expr:
     """Reports whether a variable, or every element of a section, has a value.
 
-    Called as `isset(a)`.
-
     Parameters
     ----------
-    a : variable
+    a : value
         The variable, element or section.
 
     Returns
@@ -5392,10 +5374,9 @@ def isset(
     ...
 def ieee(
     *args: object,
+    on: object = ...,
 ) -> AnyShape:
     """Lets infinite results and NaN pass from here on, such as that of 1/0, or with 0 makes them errors again.
-
-    Called as `ieee([on])`.
 
     Parameters
     ----------
@@ -5418,11 +5399,9 @@ def check_edges(
 ) -> AnyShape:
     """Stops with location and gap when the four edges of a surface are not set or do not meet.
 
-    Called as `check_edges(s)`.
-
     Parameters
     ----------
-    s : surface
+    s : curve or surface
         The surface.
 
     Returns
@@ -5440,8 +5419,6 @@ def refined(
     *args: object,
 ) -> Expr:
     """`n` points, or more when the run is refined: intervals are halved, so that coarse points recur.
-
-    Called as `refined(n)`.
 
     Parameters
     ----------
@@ -5464,8 +5441,6 @@ def refined_step(
 ) -> Expr:
     """A step per index consistent with refined(n): halved at each refinement; for d_tanhx, geometric and geometric2 the first cell of the coarse run is divided in two.
 
-    Called as `refined_step(ds)`.
-
     Parameters
     ----------
     ds : number
@@ -5487,8 +5462,6 @@ def refinement(
 ) -> Expr:
     """The number of parts of each interval of refined(n): 1, 2, 4, ...
 
-    Called as `refinement()`.
-
     Returns
     -------
     number
@@ -5502,10 +5475,9 @@ def refinement(
     ...
 def write_p3d(
     *args: object,
+    words: object = ...,
 ) -> AnyShape:
     """Writes curves, surfaces or blocks as a Plot3D file.
-
-    Called as `write_p3d(name, [words], s, ...)`.
 
     Parameters
     ----------
@@ -5515,7 +5487,7 @@ def write_p3d(
         Variant: "stream", "records" or "text"; "double" or "single"; "multi" or "single-block";
         "3d" or "2d"; "whole" or "planes"; "little" or "big"; "iblank"; "mark8". The first of
         each by default.
-    s : list of curve, surface or block
+    s : list of value
         Arrays to write; an farray of integers after one is its blanking.
 
     Returns
@@ -5534,14 +5506,12 @@ def write_vts(
 ) -> AnyShape:
     """Writes surfaces as VTK structured grids: one .vts, or several with their .vtm.
 
-    Called as `write_vts(name, s, ...)`.
-
     Parameters
     ----------
     name : text
         Name of the file, beside the program.
-    s : list of curve, surface or block
-        Arrays to write; a list counts as its members.
+    s : list of value
+        Curves, surfaces or blocks to write; a list counts as its members.
 
     Returns
     -------
@@ -5556,10 +5526,9 @@ def write_vts(
     ...
 def plot(
     *args: object,
+    view: object = ...,
 ) -> AnyShape:
     """Draws curves, surfaces and blocks to a .png or .svg; plot(name, view, ...) looks from "x", "-y", "z", "iso" ...
-
-    Called as `plot(name, [view], s, ...)`.
 
     Parameters
     ----------
@@ -5567,7 +5536,7 @@ def plot(
         Name of the file, ending in .png or .svg.
     view : text, optional
         "x", "y", "z", "-x", "-y", "-z" or "iso"; default: the view with the largest image.
-    s : list of curve, surface or block
+    s : list of value
         Curves, surfaces and blocks to draw.
 
     Returns
@@ -5583,10 +5552,9 @@ def plot(
     ...
 def write_stl(
     *args: object,
+    words: object = ...,
 ) -> AnyShape:
     """Writes surfaces as binary STL, with facets facing out of the body and without the triangles of zero area at poles; "flip" reverses the normals.
-
-    Called as `write_stl(name, [words], s, ...)`.
 
     Parameters
     ----------
@@ -5594,8 +5562,8 @@ def write_stl(
         Name of the file, beside the program.
     words : text, optional
         "flip" reverses the normals.
-    s : list of curve, surface or block
-        Arrays to write; a list counts as its members.
+    s : list of value
+        Curves, surfaces or blocks to write; a list counts as its members.
 
     Returns
     -------
@@ -5610,21 +5578,20 @@ def write_stl(
     ...
 def write_cgns(
     *args: object,
+    faces: object = ...,
 ) -> AnyShape:
     """Writes surfaces, or blocks, as structured CGNS zones with the interfaces where they have the same points; after a block its boundaries.
-
-    Called as `write_cgns(name, s, [faces], ...)`.
 
     Parameters
     ----------
     name : text
         Name of the file, beside the program.
-    s : list of curve, surface or block
-        Arrays to write; a list counts as its members.
+    s : list of value
+        Curves, surfaces or blocks to write; a list counts as its members.
     faces : text, optional
-        Boundaries of the block before it, such as "k1 = hull wall, i1 in = plane symmetry":
-        faces, a name and one of the types wall, symmetry, farfield, inflow, outflow, periodic,
-        patch.
+        Boundaries of the block before it, such as `k1 = hull wall, i1 in = plane symmetry`:
+        faces (of a surface i1, im, j1, jn), a name and one of the types "wall", "symmetry",
+        "farfield", "inflow", "outflow", "periodic", "empty", "wedge", "patch".
 
     Returns
     -------
@@ -5639,21 +5606,20 @@ def write_cgns(
     ...
 def write_su2(
     *args: object,
+    faces: object = ...,
 ) -> AnyShape:
     """Writes blocks, or surfaces in one plane as a 2-D mesh, as one SU2 mesh, joined where they have the same points; faces of equal name are one marker.
-
-    Called as `write_su2(name, b, [faces], ...)`.
 
     Parameters
     ----------
     name : text
         Name of the file, beside the program.
-    b : list of block or surface
+    b : list of value
         Blocks, or surfaces in one plane; a list counts as its members.
     faces : text, optional
-        Boundaries of the block before it, such as "k1 = hull wall, i1 in = plane symmetry" (of
-        a surface i1, im, j1, jn): faces, a name and one of the types wall, symmetry, farfield,
-        inflow, outflow, periodic, empty, wedge, patch.
+        Boundaries of the block before it, such as `k1 = hull wall, i1 in = plane symmetry`:
+        faces (of a surface i1, im, j1, jn), a name and one of the types "wall", "symmetry",
+        "farfield", "inflow", "outflow", "periodic", "empty", "wedge", "patch".
 
     Returns
     -------
@@ -5668,21 +5634,20 @@ def write_su2(
     ...
 def write_gmsh(
     *args: object,
+    faces: object = ...,
 ) -> AnyShape:
     """Writes blocks, or surfaces in one plane as a 2-D mesh, as one Gmsh mesh 4.1, joined where they have the same points; faces of equal name are one physical surface, or for surfaces one physical curve.
-
-    Called as `write_gmsh(name, b, [faces], ...)`.
 
     Parameters
     ----------
     name : text
         Name of the file, beside the program.
-    b : list of block or surface
+    b : list of value
         Blocks, or surfaces in one plane; a list counts as its members.
     faces : text, optional
-        Boundaries of the block before it, such as "k1 = hull wall, i1 in = plane symmetry" (of
-        a surface i1, im, j1, jn): faces, a name and one of the types wall, symmetry, farfield,
-        inflow, outflow, periodic, empty, wedge, patch.
+        Boundaries of the block before it, such as `k1 = hull wall, i1 in = plane symmetry`:
+        faces (of a surface i1, im, j1, jn), a name and one of the types "wall", "symmetry",
+        "farfield", "inflow", "outflow", "periodic", "empty", "wedge", "patch".
 
     Returns
     -------
@@ -5697,10 +5662,10 @@ def write_gmsh(
     ...
 def write_blockmesh(
     *args: object,
+    words: object = ...,
+    faces: object = ...,
 ) -> AnyShape:
     """Writes blocks, or surfaces in one plane between two empty sides, as a blockMeshDict of OpenFOAM with a block for each cell, so that its points are kept, or, "graded", with few blocks whose edges have the points of the grid; faces of equal name are one patch.
-
-    Called as `write_blockmesh(name, [words], b, [faces], ...)`.
 
     Parameters
     ----------
@@ -5709,11 +5674,12 @@ def write_blockmesh(
     words : text, optional
         "graded": few blocks with curved, graded edges; blockMesh interpolates between the
         edges.
-    b : list of block or surface
+    b : list of value
         Blocks, or surfaces in one plane; a list counts as its members.
     faces : text, optional
-        Boundaries of the block before it, such as "k1 = hull wall, i1 in = plane symmetry" (of
-        a surface i1, im, j1, jn).
+        Boundaries of the block before it, such as `k1 = hull wall, i1 in = plane symmetry`:
+        faces (of a surface i1, im, j1, jn), a name and one of the types "wall", "symmetry",
+        "farfield", "inflow", "outflow", "periodic", "empty", "wedge", "patch".
 
     Returns
     -------
@@ -5728,21 +5694,20 @@ def write_blockmesh(
     ...
 def write_polymesh(
     *args: object,
+    faces: object = ...,
 ) -> AnyShape:
     """Writes blocks, or surfaces in one plane between two empty sides, as a polyMesh of OpenFOAM: the files points, faces, owner, neighbour and boundary of the folder `name`; faces of equal name are one patch.
-
-    Called as `write_polymesh(name, b, [faces], ...)`.
 
     Parameters
     ----------
     name : text
         Name of the file, beside the program.
-    b : list of block or surface
+    b : list of value
         Blocks, or surfaces in one plane; a list counts as its members.
     faces : text, optional
-        Boundaries of the block before it, such as "k1 = hull wall, i1 in = plane symmetry" (of
-        a surface i1, im, j1, jn): faces, a name and one of the types wall, symmetry, farfield,
-        inflow, outflow, periodic, empty, wedge, patch.
+        Boundaries of the block before it, such as `k1 = hull wall, i1 in = plane symmetry`:
+        faces (of a surface i1, im, j1, jn), a name and one of the types "wall", "symmetry",
+        "farfield", "inflow", "outflow", "periodic", "empty", "wedge", "patch".
 
     Returns
     -------
@@ -5757,21 +5722,20 @@ def write_polymesh(
     ...
 def write_ugrid(
     *args: object,
+    faces: object = ...,
 ) -> AnyShape:
     """Writes blocks as one UGRID mesh (AFLR3) with the boundary conditions of FUN3D in a .mapbc beside it; the name ends in .b8.ugrid (big-endian), .lb8.ugrid (little-endian) or .ugrid (text). All boundaries have a name and one of the types wall, symmetry, farfield, inflow, outflow.
-
-    Called as `write_ugrid(name, b, [faces], ...)`.
 
     Parameters
     ----------
     name : text
         Name of the file, beside the program.
-    b : list of block or surface
+    b : list of value
         Blocks, or surfaces in one plane; a list counts as its members.
     faces : text, optional
-        Boundaries of the block before it, such as "k1 = hull wall, i1 in = plane symmetry" (of
-        a surface i1, im, j1, jn): faces, a name and one of the types wall, symmetry, farfield,
-        inflow, outflow, periodic, empty, wedge, patch.
+        Boundaries of the block before it, such as `k1 = hull wall, i1 in = plane symmetry`:
+        faces (of a surface i1, im, j1, jn), a name and one of the types "wall", "symmetry",
+        "farfield", "inflow", "outflow", "periodic", "empty", "wedge", "patch".
 
     Returns
     -------
@@ -5786,21 +5750,20 @@ def write_ugrid(
     ...
 def write_nmf(
     *args: object,
+    faces: object = ...,
 ) -> AnyShape:
     """Writes the connections and boundaries of blocks as a neutral map file, for the Plot3D file of the same blocks; types are called as by FUN3D, a patch by its name.
-
-    Called as `write_nmf(name, b, [faces], ...)`.
 
     Parameters
     ----------
     name : text
         Name of the file, beside the program.
-    b : list of block or surface
+    b : list of value
         Blocks, or surfaces in one plane; a list counts as its members.
     faces : text, optional
-        Boundaries of the block before it, such as "k1 = hull wall, i1 in = plane symmetry" (of
-        a surface i1, im, j1, jn): faces, a name and one of the types wall, symmetry, farfield,
-        inflow, outflow, periodic, empty, wedge, patch.
+        Boundaries of the block before it, such as `k1 = hull wall, i1 in = plane symmetry`:
+        faces (of a surface i1, im, j1, jn), a name and one of the types "wall", "symmetry",
+        "farfield", "inflow", "outflow", "periodic", "empty", "wedge", "patch".
 
     Returns
     -------
@@ -5815,19 +5778,18 @@ def write_nmf(
     ...
 def interfaces(
     *args: object,
+    faces: object = ...,
 ) -> AnyShape:
     """The connections and boundaries of blocks, or of surfaces in one plane, as the writers use them, a line for each; folded and left-handed cells, faces that are not joined and symmetry that is not plane are reported.
 
-    Called as `interfaces(b, [faces], ...)`.
-
     Parameters
     ----------
-    b : list of block or surface
+    b : list of value
         Blocks, or surfaces in one plane; a list counts as its members.
     faces : text, optional
-        Boundaries of the block before it, such as "k1 = hull wall, i1 in = plane symmetry" (of
-        a surface i1, im, j1, jn): faces, a name and one of the types wall, symmetry, farfield,
-        inflow, outflow, periodic, empty, wedge, patch.
+        Boundaries of the block before it, such as `k1 = hull wall, i1 in = plane symmetry`:
+        faces (of a surface i1, im, j1, jn), a name and one of the types "wall", "symmetry",
+        "farfield", "inflow", "outflow", "periodic", "empty", "wedge", "patch".
 
     Returns
     -------
@@ -5844,8 +5806,6 @@ def write_csv(
     *args: object,
 ) -> AnyShape:
     """Writes points as lines of x,y,z under a heading, with all digits.
-
-    Called as `write_csv(name, c, ...)`.
 
     Parameters
     ----------
@@ -5867,10 +5827,9 @@ def write_csv(
     ...
 def read_p3d(
     *args: object,
+    block: object = ...,
 ) -> AnyShape:
     """A surface or block of a Plot3D file of any variant.
-
-    Called as `read_p3d(name, [block])`.
 
     Parameters
     ----------
@@ -5881,7 +5840,7 @@ def read_p3d(
 
     Returns
     -------
-    surface or block
+    value
 
     Notes
     -----
@@ -5892,10 +5851,9 @@ def read_p3d(
     ...
 def iblank_p3d(
     *args: object,
+    block: object = ...,
 ) -> AnyShape:
     """The blanking of a surface or block of a Plot3D file, a whole number for each point.
-
-    Called as `iblank_p3d(name, [block])`.
 
     Parameters
     ----------
@@ -5906,7 +5864,7 @@ def iblank_p3d(
 
     Returns
     -------
-    farray or block
+    value
 
     Notes
     -----
@@ -5919,8 +5877,6 @@ def count_p3d(
     *args: object,
 ) -> Expr:
     """The number of surfaces and blocks of a Plot3D file.
-
-    Called as `count_p3d(name)`.
 
     Parameters
     ----------
@@ -5940,21 +5896,20 @@ def count_p3d(
     ...
 def read_cgns(
     *args: object,
+    zone: object = ...,
 ) -> AnyShape:
     """A structured zone of a CGNS file (HDF5) as a surface or block.
-
-    Called as `read_cgns(name, [zone])`.
 
     Parameters
     ----------
     name : text
         Name of the file, beside the program.
-    zone : integer or text, optional
+    zone : value, optional
         Number or name of the zone; default 1.
 
     Returns
     -------
-    surface or block
+    value
 
     Notes
     -----
@@ -5967,8 +5922,6 @@ def count_cgns(
     *args: object,
 ) -> Expr:
     """The number of zones of a CGNS file.
-
-    Called as `count_cgns(name)`.
 
     Parameters
     ----------
@@ -5991,8 +5944,6 @@ def names_cgns(
 ) -> AnyShape:
     """The names of the zones of a CGNS file, in their order.
 
-    Called as `names_cgns(name)`.
-
     Parameters
     ----------
     name : text
@@ -6000,7 +5951,7 @@ def names_cgns(
 
     Returns
     -------
-    text list
+    list
 
     Notes
     -----
@@ -6011,10 +5962,8 @@ def names_cgns(
     ...
 def read_points(
     *args: object,
-) -> CurveHandle:
+) -> AnyShape:
     """The points of a text with two or three numbers to a line, as a curve.
-
-    Called as `read_points(name)`.
 
     Parameters
     ----------
@@ -6023,7 +5972,7 @@ def read_points(
 
     Returns
     -------
-    curve
+    curve or surface
 
     Notes
     -----
@@ -6034,10 +5983,8 @@ def read_points(
     ...
 def read_aerofoil(
     *args: object,
-) -> CurveHandle:
+) -> AnyShape:
     """A section of a coordinate file in Selig's or Lednicer's listing: tail, upper side, nose, lower side, tail.
-
-    Called as `read_aerofoil(name)`.
 
     Parameters
     ----------
@@ -6046,7 +5993,7 @@ def read_aerofoil(
 
     Returns
     -------
-    curve
+    curve or surface
 
     Notes
     -----

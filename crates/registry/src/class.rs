@@ -71,10 +71,12 @@ pub enum Class {
     Block,
     /// Members by name.
     Record,
+    /// No value: the result of a function that writes or checks.
+    Nothing,
 }
 
 impl Class {
-    /// All classes, in the order of the reference.
+    /// All classes of values, in the order of the reference.
     pub const ALL: [Class; 32] = [
         Class::Any,
         Class::Number,
@@ -145,6 +147,7 @@ impl Class {
             Class::List => "list",
             Class::Block => "block",
             Class::Record => "record",
+            Class::Nothing => "nothing",
         }
     }
 
@@ -183,6 +186,7 @@ impl Class {
             Class::List => "a list",
             Class::Block => "a block (layers of surfaces)",
             Class::Record => "a record",
+            Class::Nothing => "nothing",
         }
     }
 

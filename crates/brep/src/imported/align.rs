@@ -4,8 +4,9 @@
 //! equal parameters: the path of one side in its surface's parameters is fitted again with the parametrisation of the
 //! other. It stays on the old path. Paths of many control points are fitted with fewer.
 
+use super::faces::{ImportedFace, ImportedSide, border, is_whole, within};
 use super::fitting::{FollowedPath, followed};
-use super::{ImportedFace, ImportedSide, NurbsPoints, border, is_whole, within};
+use super::points::NurbsPoints;
 use moldloft_num::Vec3;
 use moldloft_spline::nurbs::Nurbs;
 use std::collections::BTreeMap;

@@ -1,6 +1,7 @@
 //! Sides of faces along a common edge: whether they coincide, and how far apart they run.
 
-use super::{ImportedFace, NurbsPoints, border, is_whole, within};
+use super::faces::{ImportedFace, border, is_whole, within};
+use super::points::NurbsPoints;
 use moldloft_num::Vec3;
 use std::collections::HashMap;
 

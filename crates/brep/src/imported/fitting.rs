@@ -1,6 +1,7 @@
 //! Polynomial paths in the parameters of a surface, piece by piece.
 
-use super::{NurbsPoints, within};
+use super::faces::within;
+use super::points::NurbsPoints;
 use moldloft_num::{Pace, Vec3};
 use moldloft_spline::nurbs::Nurbs;
 use std::sync::OnceLock;

@@ -123,12 +123,12 @@ functions! {
         "file f = open(\"a.txt\", \"w\"); write(f, 1, {2, 3, 4}); close(f);"
         |run, call| run.open_file(call);
 
-    "close" Any [field("f", Class::Any, "The file, or its unit.")]
+    "close" Nothing [field("f", Class::Any, "The file, or its unit.")]
         "Closes a file."
         "open(7, \"a.txt\"); close(7);"
         |run, call| run.close_file(call);
 
-    "write" Any [
+    "write" Nothing [
         field("f", Class::Any, "The file, its unit, or `stdout`."),
         optional(several(field("values", Class::Any, "Texts, numbers, points and arrays, each from a new line."))),
     ]
@@ -136,7 +136,7 @@ functions! {
         "write(stdout, \"two points\", {{1, 2, 3}, {4, 5, 6}});"
         |run, call| run.write_values(call);
 
-    "read" Any [
+    "read" Nothing [
         field("f", Class::Any, "The file, or its unit."),
         several(field("variables", Class::Any, "Variables, elements and sections to fill, in order.")),
     ]
@@ -154,7 +154,7 @@ functions! {
         "function float second(float x...) { next(x); return next(x); } assert second(1, 2) == 2;"
         |run, call| run.sequence(call, SequenceUse::Next);
 
-    "rewind" Any [field("c", Class::Any, "The multiple argument, or the file.")]
+    "rewind" Nothing [field("c", Class::Any, "The multiple argument, or the file.")]
         "Returns to the first item of a multiple argument, or to the start of a file."
         "function float first(float x...) { next(x); rewind(x); return next(x); } assert first(1, 2) == 1;"
         |run, call| run.sequence(call, SequenceUse::Rewind);
@@ -169,12 +169,12 @@ functions! {
         "curve c[3]; c[1:2] = {0, 0, 0}; assert isset(c[2]) and not isset(c);"
         |run, call| run.is_set(call);
 
-    "ieee" Any [optional(field("on", Class::Number, "0: errors again; default 1."))]
+    "ieee" Nothing [optional(field("on", Class::Number, "0: errors again; default 1."))]
         "Lets infinite results and NaN pass from here on, such as that of 1/0, or with 0 makes them errors again."
         "ieee(); float a = 1/0; assert a > 1e308; ieee(0);"
         |run, call| run.ieee(call);
 
-    "check_edges" Any [field("s", Class::Vectors, "The surface.")]
+    "check_edges" Nothing [field("s", Class::Vectors, "The surface.")]
         "Stops with location and gap when the four edges of a surface are not set or do not meet."
         "surface s[3,3] = {0, 0, 0}; check_edges(s);"
         |run, call| run.check_edges(call);
@@ -194,7 +194,7 @@ functions! {
         "assert refinement() >= 1;"
         |run, call| run.refinement(call);
 
-    "write_p3d" Any [
+    "write_p3d" Nothing [
         FILE,
         optional(field("words", Class::Text, "Variant: \"stream\", \"records\" or \"text\"; \"double\" or \"single\"; \"multi\" or \"single-block\"; \"3d\" or \"2d\"; \"whole\" or \"planes\"; \"little\" or \"big\"; \"iblank\"; \"mark8\". The first of each by default.")),
         several(field("s", Class::Any, "Arrays to write; an farray of integers after one is its blanking.")),
@@ -203,12 +203,12 @@ functions! {
         "surface s[3,2] = {1, 2, 3}; write_p3d(\"s.x\", \"records single\", s); surface t = read_p3d(\"s.x\"); assert t.d1 == 3;"
         |run, call| run.write_grids(call, &grid_formats::PLOT3D);
 
-    "write_vts" Any [FILE, ARRAYS]
+    "write_vts" Nothing [FILE, ARRAYS]
         "Writes surfaces as VTK structured grids: one .vts, or several with their .vtm."
         "surface s[3,2] = {1, 2, 3}; write_vts(\"s.vts\", s);"
         |run, call| run.write_grids(call, &grid_formats::VTS);
 
-    "plot" Any [
+    "plot" Nothing [
         field("name", Class::Text, "Name of the file, ending in .png or .svg."),
         optional(field("view", Class::Text, "\"x\", \"y\", \"z\", \"-x\", \"-y\", \"-z\" or \"iso\"; default: the view with the largest image.")),
         several(field("s", Class::Any, "Curves, surfaces and blocks to draw.")),
@@ -217,7 +217,7 @@ functions! {
         "curve c[30]; c.x = uniform(0, 1, 30); c.y = c.x^2; plot(\"parabola.svg\", c);"
         |run, call| run.write_grids(call, &grid_formats::PICTURE);
 
-    "write_stl" Any [
+    "write_stl" Nothing [
         FILE,
         optional(field("words", Class::Text, "\"flip\" reverses the normals.")),
         ARRAYS,
@@ -226,22 +226,22 @@ functions! {
         "surface s[2,2]; s[1,] = {{0, 0, 0}, {0, 1, 0}}; s[2,] = {{1, 0, 0}, {1, 1, 0}}; write_stl(\"s.stl\", s);"
         |run, call| run.write_grids(call, &grid_formats::STL);
 
-    "write_cgns" Any [FILE, ARRAYS, FACES]
+    "write_cgns" Nothing [FILE, ARRAYS, FACES]
         "Writes surfaces, or blocks, as structured CGNS zones with the interfaces where they have the same points; after a block its boundaries."
         "surface s[3,2] = {1, 2, 3}; write_cgns(\"s.cgns\", s);"
         |run, call| run.write_grids(call, &grid_formats::CGNS);
 
-    "write_su2" Any [FILE, BLOCKS, FACES]
+    "write_su2" Nothing [FILE, BLOCKS, FACES]
         "Writes blocks, or surfaces in one plane as a 2-D mesh, as one SU2 mesh, joined where they have the same points; faces of equal name are one marker."
         "surface s[2,2]; s[1,] = {{0, 0, 0}, {0, 1, 0}}; s[2,] = {{1, 0, 0}, {1, 1, 0}}; block b = {s, s + {0, 0, 1}}; write_su2(\"b.su2\", b, \"k1 = floor wall, i1 in j1 jn kn = box outflow\");"
         |run, call| run.write_grids(call, &grid_formats::SU2);
 
-    "write_gmsh" Any [FILE, BLOCKS, FACES]
+    "write_gmsh" Nothing [FILE, BLOCKS, FACES]
         "Writes blocks, or surfaces in one plane as a 2-D mesh, as one Gmsh mesh 4.1, joined where they have the same points; faces of equal name are one physical surface, or for surfaces one physical curve."
         "surface s[2,2]; s[1,] = {{0, 0, 0}, {0, 1, 0}}; s[2,] = {{1, 0, 0}, {1, 1, 0}}; block b = {s, s + {0, 0, 1}}; write_gmsh(\"b.msh\", b, \"k1 = floor wall, i1 in j1 jn kn = box outflow\");"
         |run, call| run.write_grids(call, &grid_formats::GMSH);
 
-    "write_blockmesh" Any [
+    "write_blockmesh" Nothing [
         FILE,
         optional(field("words", Class::Text, "\"graded\": few blocks with curved, graded edges; blockMesh interpolates between the edges.")),
         BLOCKS,
@@ -251,17 +251,17 @@ functions! {
         "surface s[2,2]; s[1,] = {{0, 0, 0}, {0, 1, 0}}; s[2,] = {{1, 0, 0}, {1, 1, 0}}; block b = {s, s + {0, 0, 1}}; write_blockmesh(\"blockMeshDict\", b, \"k1 = floor wall, i1 in j1 jn kn = box outflow\");"
         |run, call| run.write_grids(call, &grid_formats::BLOCK_MESH);
 
-    "write_polymesh" Any [FILE, BLOCKS, FACES]
+    "write_polymesh" Nothing [FILE, BLOCKS, FACES]
         "Writes blocks, or surfaces in one plane between two empty sides, as a polyMesh of OpenFOAM: the files points, faces, owner, neighbour and boundary of the folder `name`; faces of equal name are one patch."
         "surface s[2,2]; s[1,] = {{0, 0, 0}, {0, 1, 0}}; s[2,] = {{1, 0, 0}, {1, 1, 0}}; block b = {s, s + {0, 0, 1}}; write_polymesh(\"constant/polyMesh\", b, \"k1 = floor wall, i1 in j1 jn kn = box outflow\");"
         |run, call| run.write_grids(call, &grid_formats::POLY_MESH);
 
-    "write_ugrid" Any [FILE, BLOCKS, FACES]
+    "write_ugrid" Nothing [FILE, BLOCKS, FACES]
         "Writes blocks as one UGRID mesh (AFLR3) with the boundary conditions of FUN3D in a .mapbc beside it; the name ends in .b8.ugrid (big-endian), .lb8.ugrid (little-endian) or .ugrid (text). All boundaries have a name and one of the types wall, symmetry, farfield, inflow, outflow."
         "surface s[2,2]; s[1,] = {{0, 0, 0}, {0, 1, 0}}; s[2,] = {{1, 0, 0}, {1, 1, 0}}; block b = {s, s + {0, 0, 1}}; write_ugrid(\"b.b8.ugrid\", b, \"k1 = floor wall, i1 in j1 jn kn = box outflow\");"
         |run, call| run.write_grids(call, &grid_formats::UGRID);
 
-    "write_nmf" Any [FILE, BLOCKS, FACES]
+    "write_nmf" Nothing [FILE, BLOCKS, FACES]
         "Writes the connections and boundaries of blocks as a neutral map file, for the Plot3D file of the same blocks; types are called as by FUN3D, a patch by its name."
         "surface s[2,2]; s[1,] = {{0, 0, 0}, {0, 1, 0}}; s[2,] = {{1, 0, 0}, {1, 1, 0}}; block b = {s, s + {0, 0, 1}}; write_nmf(\"b.nmf\", b, \"k1 = floor wall, i1 in j1 jn kn = box outflow\"); write_p3d(\"b.p3d\", b);"
         |run, call| run.write_grids(call, &grid_formats::NEUTRAL_MAP);
@@ -271,7 +271,7 @@ functions! {
         "surface s[2,2]; s[1,] = {{0, 0, 0}, {0, 1, 0}}; s[2,] = {{1, 0, 0}, {1, 1, 0}}; block b = {s, s + {0, 0, 1}}; block c = b + {1, 0, 0}; print interfaces(b, \"i1 j1 jn k1 kn = box wall\", c, \"in j1 jn k1 kn = box wall\");"
         |run, call| run.interfaces(call);
 
-    "write_csv" Any [FILE, several(field("c", Class::Vectors, "Curves or surfaces to write."))]
+    "write_csv" Nothing [FILE, several(field("c", Class::Vectors, "Curves or surfaces to write."))]
         "Writes points as lines of x,y,z under a heading, with all digits."
         "curve c[2] = {1, 2, 3}; write_csv(\"c.csv\", c); assert read_points(\"c.csv\")[2] . {1, 0, 0} == 1;"
         |run, call| run.write_grids(call, &grid_formats::CSV);
