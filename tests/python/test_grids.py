@@ -271,7 +271,7 @@ assert edge.d1 == 7 and max(|edge[1:4] - lower[,1]|) == 0;
         ('write_p3d("a.x", "single-block", lower, upper);', "single-block"),
         ('write_p3d("a.x", "2d", upper);', "2-D"),
         ('write_p3d("a.x", lower, upper.z);', "whole number"),
-        ('write_p3d("a.x");', "invalid arguments"),
+        ('write_p3d("a.x");', "needs `s`"),
         ('write_p3d("a.x", "text");', "nothing to write"),
         ('write_p3d("../a.x", lower);', "outside-folder"),
         ('write_stl("/a.stl", lower);', "outside-folder"),

@@ -2,7 +2,8 @@
 
 use super::Hdf5File;
 use super::bytes::{Cursor, fault};
-use super::header::{self, Message};
+use super::codes;
+use super::header::Message;
 use crate::ReadError;
 
 #[derive(Clone, Debug, PartialEq)]
@@ -119,15 +120,15 @@ pub(super) fn numbers<'a>(
         let message = messages.iter().find(|message| message.kind == kind);
         message.copied().ok_or_else(|| fault(0, what, "an object without"))
     };
-    let kind = of(header::DATATYPE, "a type of numbers")?;
+    let kind = of(codes::DATATYPE, "a type of numbers")?;
     if kind.shared {
         return Err(fault(kind.body.at, "a type of its own", "a committed type"));
     }
     let kind = NumberType::read(&mut kind.body.clone())?;
-    let extents = extents(&mut of(header::DATASPACE, "extents")?.body.clone())?;
+    let extents = extents(&mut of(codes::DATASPACE, "extents")?.body.clone())?;
     let count = extents.iter().try_fold(1usize, |all, n| all.checked_mul(*n));
     let bytes = count.and_then(|count| count.checked_mul(kind.size));
-    let layout = of(header::LAYOUT, "the layout of the numbers")?;
+    let layout = of(codes::LAYOUT, "the layout of the numbers")?;
     let here = layout.body.at;
     let Some(bytes) = bytes.filter(|bytes| *bytes <= file.bytes.len().saturating_mul(1024)) else {
         return Err(fault(here, "no more numbers than bytes", format!("{extents:?} of them")));
@@ -227,7 +228,7 @@ fn chunked(
     bytes: usize,
     messages: &[Message<'_>],
 ) -> Result<Vec<u8>, ReadError> {
-    if let Some(filters) = messages.iter().find(|message| message.kind == header::FILTERS) {
+    if let Some(filters) = messages.iter().find(|message| message.kind == codes::FILTERS) {
         return Err(fault(
             filters.body.at,
             "numbers that are not compressed",

@@ -1,18 +1,9 @@
 //! Object headers: the messages that describe an object.
 
 use super::bytes::{Cursor, fault};
+use super::codes::CONTINUATION;
 use super::{Hdf5File, MOST_OBJECTS};
 use crate::ReadError;
-
-pub(super) const DATASPACE: u16 = 1;
-pub(super) const LINK_INFO: u16 = 2;
-pub(super) const DATATYPE: u16 = 3;
-pub(super) const LINK: u16 = 6;
-pub(super) const LAYOUT: u16 = 8;
-pub(super) const FILTERS: u16 = 11;
-pub(super) const ATTRIBUTE: u16 = 12;
-const CONTINUATION: u16 = 16;
-pub(super) const SYMBOL_TABLE: u16 = 17;
 
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Message<'a> {

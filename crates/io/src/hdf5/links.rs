@@ -1,7 +1,8 @@
 //! Content of groups: tables of symbols, links in the header, links in a fractal heap.
 
 use super::bytes::{Cursor, fault};
-use super::header::{self, Message};
+use super::codes;
+use super::header::Message;
 use super::{Hdf5File, Link, MOST_OBJECTS, StoredObject};
 use crate::ReadError;
 
@@ -13,12 +14,12 @@ pub(super) fn links<'a>(
     for message in messages {
         let mut body = message.body;
         match message.kind {
-            header::SYMBOL_TABLE => {
+            codes::SYMBOL_TABLE => {
                 let (tree, heap) = (body.address()?, body.address()?);
                 symbols(file, tree, heap, &mut links)?;
             }
-            header::LINK => links.push(link(body)?),
-            header::LINK_INFO => {
+            codes::LINK => links.push(link(body)?),
+            codes::LINK_INFO => {
                 body.skip(1)?;
                 let flags = body.byte()?;
                 body.skip(if flags & 1 != 0 { 8 } else { 0 })?;

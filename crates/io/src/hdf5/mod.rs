@@ -12,6 +12,7 @@
 //! `bytes -> Hdf5File -> Group (address of an object header) -> children, texts, numbers`
 
 mod bytes;
+mod codes;
 mod dataset;
 mod header;
 mod links;
@@ -23,9 +24,6 @@ pub(crate) use write::{Hdf5Array, Hdf5Attribute, Hdf5Element, Hdf5Group, Hdf5Obj
 use crate::ReadError;
 use bytes::{Cursor, fault};
 use header::{Message, messages};
-
-/// The first bytes of each file.
-const SIGNATURE: &[u8; 8] = b"\x89HDF\r\n\x1a\n";
 
 /// Objects that a file may have; links in a circle end there.
 const MOST_OBJECTS: usize = 1 << 20;
@@ -63,7 +61,7 @@ impl<'a> Hdf5File<'a> {
         let starts = std::iter::once(0).chain((9..40).map(|k| 1usize << k));
         let start = starts
             .take_while(|start| start + 8 <= all.len())
-            .find(|&start| &all[start..start + 8] == SIGNATURE)
+            .find(|&start| &all[start..start + 8] == codes::SIGNATURE)
             .ok_or_else(|| fault(0, "an HDF5 file", "other bytes"))?;
         let bytes = &all[start..];
         let mut at = Cursor { bytes, at: 8, offset: 8, length: 8 };
@@ -134,7 +132,7 @@ impl<'a> Hdf5File<'a> {
     /// A text among the attributes of an object.
     pub fn text(&self, object: StoredObject, name: &str) -> Result<Option<String>, ReadError> {
         for message in self.messages(object)? {
-            if message.kind == header::ATTRIBUTE
+            if message.kind == codes::ATTRIBUTE
                 && let Some(text) = dataset::text_attribute(&message, name)?
             {
                 return Ok(Some(text));

@@ -3,6 +3,7 @@
 //! A superblock of version 2 and object headers of version 2, which HDF5 1.8 and newer reads. A group has all its
 //! links in its header, with their order of creation.
 
+use super::codes;
 use crate::WriteError;
 
 /// A group: its attributes, and its members in their order.
@@ -87,7 +88,7 @@ const GROUP_INFO: u16 = 10;
 pub(crate) fn write(root: Hdf5Group) -> Result<Vec<u8>, WriteError> {
     let mut out = vec![0; SUPERBLOCK_BYTES];
     let root = object(&mut out, Hdf5Object::Group(root))?;
-    let mut head = super::SIGNATURE.to_vec();
+    let mut head = codes::SIGNATURE.to_vec();
     // Version 2, addresses and lengths of 8 bytes, closed.
     head.extend([2, 8, 8, 0]);
     for address in [0, NOWHERE, out.len() as u64, root] {
@@ -106,14 +107,14 @@ fn object(out: &mut Vec<u8>, object: Hdf5Object) -> Result<u64, WriteError> {
             align(out);
             let address = out.len() as u64;
             out.extend(&array.bytes);
-            messages.add(super::header::DATASPACE, &dataspace(&array.extents));
-            messages.add(super::header::DATATYPE, &array.element.datatype());
+            messages.add(codes::DATASPACE, &dataspace(&array.extents));
+            messages.add(codes::DATATYPE, &array.element.datatype());
             // Version 3: allocated late, written if set, zero.
             messages.add(FILL_VALUE, &[3, 0x0a]);
             let mut layout = vec![3, 1];
             layout.extend(address.to_le_bytes());
             layout.extend((array.bytes.len() as u64).to_le_bytes());
-            messages.add(super::header::LAYOUT, &layout);
+            messages.add(codes::LAYOUT, &layout);
         }
         Hdf5Object::Group(group) => {
             let count = group.members.len();
@@ -124,15 +125,15 @@ fn object(out: &mut Vec<u8>, object: Hdf5Object) -> Result<u64, WriteError> {
             let mut info = vec![0, 3];
             info.extend((count as u64).to_le_bytes());
             info.extend([0xff; 24]);
-            messages.add(super::header::LINK_INFO, &info);
+            messages.add(codes::LINK_INFO, &info);
             // All links stay in the header, however many there are.
             messages.add(GROUP_INFO, &[0, 1, 0xff, 0xff, 0, 0]);
             for (name, value) in &group.attributes {
-                messages.add(super::header::ATTRIBUTE, &attribute(name, value));
+                messages.add(codes::ATTRIBUTE, &attribute(name, value));
             }
             for (order, (name, member)) in group.members.into_iter().enumerate() {
                 let address = self::object(out, member)?;
-                messages.add(super::header::LINK, &link(&name, order, address)?);
+                messages.add(codes::LINK, &link(&name, order, address)?);
             }
         }
     }
