@@ -166,8 +166,8 @@ def _parameters(row: dict[str, Any]) -> list[str]:
     fields = row["fields"]
     if row["in_run"]:
         # Some take any number of arguments, or words before them.
-        by_name = [f["name"] for f in fields if not f["required"] and not f["variadic"]]
-        return ["*args: object", *(f"{python_name(name)}: object = ..." for name in by_name)]
+        optional = [f["name"] for f in fields if not f["required"] and not f["variadic"]]
+        return ["*args: object", *(f"{python_name(name)}: object = ..." for name in optional)]
     lines: list[str] = []
     by_name: list[str] = []
     if row["is_kind"]:
