@@ -6,7 +6,6 @@ use crate::{degenerate, faired};
 use indexmap::IndexMap;
 use moldloft_budget::{Budget, Spent};
 use moldloft_diag::{Diagnostic, Sources};
-use moldloft_lang::World;
 use moldloft_lang::model_file::units::{self, PhysicalDimension};
 use moldloft_lang::run::interpreter::{Inputs, Settings};
 use moldloft_lang::run::program::{self, RunContext};
@@ -16,6 +15,7 @@ use moldloft_lang::source::fault_location::unplaced;
 use moldloft_lang::source::module::Modules;
 use moldloft_lang::source::scope::Binding;
 use moldloft_lang::source::sketch_file::{self, SketchFile};
+use moldloft_lang::{RunScalar, World};
 use moldloft_mesh::Mesh;
 use moldloft_model::{Applied, Extent, Graph};
 use moldloft_num::{Dual4, Fineness};
@@ -370,7 +370,7 @@ impl Document {
 
     /// Runs the source on a graph. `report` is false for runs with derivatives: their diagnostics
     /// would repeat those of the plain run.
-    pub(crate) fn evaluate<T: Scalar>(
+    pub(crate) fn evaluate<T: RunScalar>(
         &mut self,
         evaluation: &mut Evaluation<T>,
         seed: Seed<'_, T>,
@@ -414,9 +414,11 @@ impl Document {
                 evaluation.graph.apply(Extent::Whole, |_| ()).1
             }
             ObjectSource::Program | ObjectSource::Sketch(_) => {
-                program.run(evaluation, inputs, &mut found)
+                T::run_program(program, evaluation, inputs, &mut found)
             }
-            ObjectSource::ModelFile(source) => source.run(program, evaluation, inputs, &mut found),
+            ObjectSource::ModelFile(source) => {
+                T::run_model_file(source, program, evaluation, inputs, &mut found)
+            }
             ObjectSource::None => evaluation.graph.apply(Extent::Whole, |_| ()).1,
         };
         if report {

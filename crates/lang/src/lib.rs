@@ -13,12 +13,14 @@
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 
 mod array;
+mod closed;
 pub mod functions;
 pub mod model_file;
 pub mod run;
 pub mod source;
 pub mod value;
 
+pub use closed::RunScalar;
 pub use functions::builtins::MOST_REFINED;
 pub use run::inserted::{INSERTED_FILES, InsertedFile};
 pub use source::env::{Evaluation, Param, SolveStatus};

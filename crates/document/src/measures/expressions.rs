@@ -6,6 +6,7 @@ use crate::set::coefficient_name;
 use indexmap::IndexMap;
 use moldloft_diag::Diagnostic;
 use moldloft_hydro::USUAL_ACCURACY;
+use moldloft_lang::RunScalar;
 use moldloft_lang::run::interpreter::Inputs;
 use moldloft_lang::run::program::RunContext;
 use moldloft_lang::run::whole::{body_numbers, mesh_numbers, not_finite, one_of};
@@ -62,7 +63,7 @@ impl Document {
         Ok(numbers)
     }
 
-    pub(crate) fn eval_in<T: Scalar>(
+    pub(crate) fn eval_in<T: RunScalar>(
         &mut self,
         evaluation: &mut Evaluation<T>,
         text: &str,
@@ -85,7 +86,7 @@ impl Document {
             sketch: None,
             converted: moldloft_lang::model_file::converted,
         };
-        let (value, remarks) = program.eval(evaluation, inputs, text)?;
+        let (value, remarks) = T::eval(program, evaluation, inputs, text)?;
         self.expression_remarks = remarks;
         // Array statements may compute with infinity, as in programs of 1992; it is not a result.
         let finite = match &value {

@@ -130,7 +130,7 @@ impl ModelFileSource {
     }
 
     /// Declares the objects in a graph.
-    pub fn run<T: Scalar>(
+    pub(crate) fn run<T: Scalar>(
         &self,
         host: RunContext<'_>,
         evaluation: &mut Evaluation<T>,

@@ -117,7 +117,7 @@ pub fn with_stack<R: Send>(f: impl FnOnce() -> R + Send) -> R {
 
 impl RunContext<'_> {
     /// Runs module 0 and the modules that it loads.
-    pub fn run<T: Scalar>(
+    pub(crate) fn run<T: Scalar>(
         self,
         evaluation: &mut Evaluation<T>,
         inputs: Inputs<'_, T>,
@@ -151,7 +151,7 @@ impl RunContext<'_> {
     }
 
     /// The value of an expression in the names of the last run, with its warnings.
-    pub fn eval<T: Scalar>(
+    pub(crate) fn eval<T: Scalar>(
         self,
         evaluation: &mut Evaluation<T>,
         inputs: Inputs<'_, T>,
