@@ -6,7 +6,7 @@ import type { FileTabs } from './file_tabs'
 import type { Hands } from './hands'
 import type { Held } from './history'
 import type { Host } from './host'
-import { type Link, Newest, Refused } from './link'
+import { type Given, type Link, Newest, Refused, type RequestKind, type RequestOf } from './link'
 import { model } from './state'
 
 /** A hand that has not moved for this long rests, in ms. */
@@ -74,11 +74,11 @@ export class Changes {
   }
 
   /** Has the engine change the text: a step of the history. */
-  edits(kind: string, fields: Record<string, unknown>, name: string): Promise<void> {
+  edits<K extends RequestKind>(kind: K, fields: RequestOf<K>, name: string): Promise<void> {
     return this.after(async () => {
       await this.editor.synced()
       await this.setting.settled()
-      const { head } = await this.link.ask(kind, fields)
+      const { head } = await this.link.ask(kind, ...([fields] as Given<K>))
       const now = (head.kept ?? []).map((n: string) => ({
         name: n,
         from: this.held.get(n) ?? null,

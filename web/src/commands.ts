@@ -159,7 +159,7 @@ function objectCommands(app: App): Command[] {
     if (name) run(name)
     else shell.say('Select an object first')
   }
-  const rewrite = (kind: string, words: string) =>
+  const rewrite = (kind: 'delete' | 'duplicate', words: string) =>
     chosen((name) => void actions.rewrite(kind, { name }, `${words} ${name}`))
   const changing =
     app.link.still || !model.program

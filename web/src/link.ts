@@ -1,6 +1,7 @@
 // What answers the page: the server's engine through a socket, or the last scene of a file.
 
 import { type Facts, Frame } from './frame'
+import type { Requests } from './requests'
 
 export class Refused extends Error {
   constructor(
@@ -11,12 +12,32 @@ export class Refused extends Error {
   }
 }
 
+/** What the server answers in frames besides its engine, and what it has to know of a request besides. */
+interface ServerRequests {
+  /** A CAD file as a program. */
+  import: { name: string; data: string; units: string }
+  /** The functions of the language. */
+  functions: Record<never, never>
+  /** A file of the model with values that are not in its text. */
+  export: Requests['export'] & { values: Record<string, number> }
+}
+
+type All = Omit<Requests, keyof ServerRequests> & ServerRequests
+
+export type RequestKind = keyof All
+
+/** The fields of a request. */
+export type RequestOf<K extends RequestKind> = All[K]
+
+/** The fields as an argument, which may be left out where none is needed. */
+export type Given<K extends RequestKind> = Partial<All[K]> extends All[K] ? [fields?: All[K]] : [fields: All[K]]
+
 export interface Link {
   /** True when nothing can be changed. */
   readonly still: boolean
   /** True when the text is in this page alone. */
   readonly local: boolean
-  ask(kind: string, fields?: Facts): Promise<Frame>
+  ask<K extends RequestKind>(kind: K, ...fields: Given<K>): Promise<Frame>
   tell(message: Facts): Promise<Facts>
   onFrame: (frame: Frame) => void
   onMessage: (message: Facts) => void
@@ -150,7 +171,7 @@ export class StillLink implements Link {
     this.onMessage(this.hello)
   }
 
-  async ask(kind: string): Promise<Frame> {
+  async ask(kind: string, ..._: unknown[]): Promise<Frame> {
     const data = this.frames[kind]
     if (!data) throw new Refused('this page shows the model as it was: open it with `moldloft view` to change it')
     const frame = new Frame(data.slice(0))

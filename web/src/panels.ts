@@ -3,6 +3,7 @@
 import { h, shown, store, stored } from './dom'
 import { fileName } from './editor'
 import { FIGURES, unitOf } from './figures'
+import type { RequestKind, RequestOf } from './link'
 import type { GivenNumbers } from './numbers'
 import { changed, type Fault, model, on, type Param, type Remark } from './state'
 
@@ -23,7 +24,7 @@ export interface Actions {
   show(place: [number, number], file?: string): void
   apply(edits: { from: number; to: number; insert: string }[], version?: number, name?: string): void
   /** A change of statements by the engine: a step of the history. */
-  rewrite(kind: string, fields: Record<string, unknown>, name: string): Promise<void>
+  rewrite<K extends RequestKind>(kind: K, fields: RequestOf<K>, name: string): Promise<void>
   toggle(name: string): void
   isolate(name: string | null): void
   /** Shows what was there before, while the hand moves. */

@@ -3,6 +3,7 @@
 
 mod drags;
 mod overlays;
+mod requests;
 mod scenes;
 mod statements;
 mod texts_beside;

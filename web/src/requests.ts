@@ -1,0 +1,234 @@
+// The requests of the engine, by their kinds. Made by `crates/session/tests/it/requests.rs`; see there.
+
+/** Options of a number that may change. */
+export interface Adjusted {
+  /** Weight of its change. */
+  weight?: number
+  /** The value from which changes are measured. */
+  home?: number | null
+}
+
+/** The requests. Offsets in the text are UTF-16 units. */
+export interface Requests {
+  /** The complete state, for a new viewer. */
+  open: Record<never, never>
+  /** Changes since the last reply to this viewer. */
+  sync: Record<never, never>
+  /** Ends the viewer. */
+  close: Record<never, never>
+  /** Replaces the text. */
+  text: {
+    /** The text. */
+    text: string
+  }
+  /** Replaces the text of a file beside the document. */
+  text_beside: {
+    /** The file's name, as in the fact `reads`. */
+    name: string
+    /** The text; without one the file counts again. */
+    text?: string | null
+  }
+  /** The files that the text reads, directly or through other files. */
+  reads: Record<never, never>
+  /** Applies one or several change sets to the text. */
+  splice: {
+    /** Change sets of CodeMirror: lists of retained lengths and of `[removed, line, line ...]`. */
+    changes: unknown[]
+  }
+  /** Sets parameters and numbers of objects without writing them to the text. */
+  set: {
+    /** Values by name. */
+    values: Record<string, number>
+  }
+  /** Adjusts numbers by the least change that gives expressions the stated values, without writing them to the text. */
+  solve_for: {
+    /** Target values by expression. */
+    targets: Record<string, number>
+    /** Names of the numbers that may change. */
+    by: Record<string, Adjusted>
+  }
+  /** Writes the set values to the text; the reply has the edits. */
+  commit: Record<never, never>
+  /** Reverts set values that are not written to the text. */
+  reset: Record<never, never>
+  /** Sets parameters and numbers of objects and writes them to the text; the reply has the edits. */
+  write: {
+    /** Values by name. */
+    values: Record<string, number>
+  }
+  /** Starts a drag; the reply has the numbers that move the point. */
+  drag_begin: {
+    /** The object. */
+    object: string
+    /** Parameters of the point on the object: none for a point, t for a curve, u and v for a surface. */
+    at?: number[]
+  }
+  /** Moves the dragged point as near to a target as possible. */
+  drag_to: {
+    /** The target position. */
+    target: [number, number, number]
+    /** Orthonormal vectors; only distances along these are minimised. */
+    basis: [number, number, number][]
+    /** Numbers to adjust in addition to the object's own; by default those that the motion requires. */
+    names?: string[]
+    /** Rounding unit of numbers, as a length, such as the size of a pixel. */
+    grain?: number
+  }
+  /** Ends a drag; the reply has the edits. */
+  drag_end: {
+    /** False to revert the drag. */
+    commit: boolean
+  }
+  /** Details of an object. */
+  inspect: {
+    /** Its name. */
+    name: string
+    /** A parameter with respect to which its numbers are differentiated. */
+    by?: string | null
+  }
+  /** Expressions to watch; the reply has their values. */
+  watch: {
+    /** The expressions. */
+    expressions: string[]
+  }
+  /** Values of the watched expressions. */
+  measure: Record<never, never>
+  /** Values of expressions, without watching them. */
+  evaluate: {
+    /** The expressions. */
+    expressions: string[]
+    /** A parameter with respect to which they are differentiated. */
+    by?: string | null
+  }
+  /** Selects additional items of the scene. */
+  show: {
+    /** True to draw sections. */
+    contours?: boolean | null
+    /** Hidden objects to draw. */
+    revealed?: string[] | null
+  }
+  /** A field at the vertices of all patches. */
+  field: {
+    /** A name of [`crate::FIELDS`], or `derivative`. */
+    field: string
+    /** The parameter of `derivative`. */
+    by?: string | null
+  }
+  /** Curvature combs of curves. */
+  combs: {
+    /** The curves. */
+    names: string[]
+  }
+  /** Volume blocks with their quality, folded cells, and one grid plane. */
+  blocks: {
+    /** The block of the grid plane, if one is requested. */
+    block?: string | null
+    /** The axis of constant index: 0, 1 or 2. */
+    axis?: number
+    /** The index, from 0. */
+    index?: number
+  }
+  /** Lays a mesh or a table of points over the model; the reply has the overlays. */
+  overlay: {
+    /** File name; its extension gives the format. */
+    name: string
+    /** File content in base64. */
+    data: string
+  }
+  /** Removes an overlay, or all; the reply has the remaining ones. */
+  remove_overlay: {
+    /** Its name; all without one. */
+    name?: string | null
+  }
+  /** Distances of the overlays from the surfaces. */
+  deviation: Record<never, never>
+  /** The curve of immersed section areas along x. */
+  section_areas: {
+    /** Number of sections. */
+    count: number
+  }
+  /** The lines plan on one sheet, as SVG. */
+  lines_plan: {
+    /** Its title. */
+    title?: string
+  }
+  /** Closure and quality of the mesh. */
+  mesh: Record<never, never>
+  /** The hydrostatics. */
+  hydrostatics: Record<never, never>
+  /** Exports the model. */
+  export: {
+    /** Its name. */
+    format: string
+    /** File name without extension. */
+    stem: string
+  }
+  /** The names of the formats. */
+  formats: Record<never, never>
+  /** Completions at an offset. */
+  complete: {
+    /** The offset. */
+    offset: number
+  }
+  /** Description of the name at an offset. */
+  hover: {
+    /** The offset. */
+    offset: number
+  }
+  /** Declaration of the name at an offset. */
+  definition: {
+    /** The offset. */
+    offset: number
+  }
+  /** Declaration of an object. */
+  locate: {
+    /** Its name. */
+    name: string
+  }
+  /** Edits that rename all uses of the name at an offset. */
+  rename: {
+    /** The offset. */
+    offset: number
+    /** The new name. */
+    new: string
+  }
+  /** The kinds of objects, with their arguments. */
+  kinds: Record<never, never>
+  /** Inserts a statement; the reply has the edits. */
+  add: {
+    /** A statement that declares one object or parameter. */
+    statement: string
+  }
+  /** Deletes an object and its statement; the reply has the edits. */
+  delete: {
+    /** Its name. */
+    name: string
+  }
+  /** Copies the statement of an object; the reply has the edits and the new name. */
+  duplicate: {
+    /** The object. */
+    name: string
+  }
+  /** Moves the statement of an object before that of another one; the reply has the edits. */
+  reorder: {
+    /** The object. */
+    name: string
+    /** The other one. */
+    beside: string
+    /** True for behind it. */
+    behind?: boolean
+  }
+  /** Renames an object and all its uses; the reply has the edits. */
+  rename_object: {
+    /** Its name. */
+    name: string
+    /** The new name. */
+    new: string
+  }
+  /** The edit that formats the text. */
+  format: Record<never, never>
+  /** The words of the language, for highlighting. */
+  words: Record<never, never>
+  /** Does nothing; the reply shows that the engine is running. */
+  ping: Record<never, never>
+}
