@@ -1,5 +1,7 @@
 // Arrays of numbers and of vectors in the text of a program: where each number is written.
 
+import type { EditFact } from './protocol'
+
 export interface Place {
   from: number
   to: number
@@ -132,14 +134,8 @@ export function grouped(arrays: WrittenArray[]): WrittenArray[][] {
   return groups
 }
 
-interface Edit {
-  from: number
-  to: number
-  insert: string
-}
-
 /** The edits that repeat the last row of a table, or take it away. */
-export function rowEdits(group: WrittenArray[], text: string, more: boolean): Edit[] {
+export function rowEdits(group: WrittenArray[], text: string, more: boolean): EditFact[] {
   return group.flatMap(({ rows, size }) => {
     const last = rows.at(-1)!
     const count = size ? [{ ...size, insert: String(rows.length + (more ? 1 : -1)) }] : []

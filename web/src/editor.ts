@@ -40,13 +40,8 @@ import { h } from './dom'
 import { type Held, holding, keptSteps, Steps, stepOf } from './history'
 import { programParser, sketchParser, type Words } from './language'
 import type { Link } from './link'
+import type { EditFact } from './protocol'
 import { model } from './state'
-
-export interface Edit {
-  from: number
-  to: number
-  insert: string
-}
 
 const fromOutside = Annotation.define<boolean>()
 /** A change that the host of the page made: the engine hears it, the host knows it. */
@@ -88,7 +83,7 @@ export class Editor {
   onCursor: (offset: number) => void = () => {}
   onTrouble: (words: string) => void = () => {}
   /** What a hand on the page changed: places in the text before it, and what is there now. */
-  onEdit: (before: Text, changes: Edit[]) => void = () => {}
+  onEdit: (before: Text, changes: EditFact[]) => void = () => {}
   onShow: (place: [number, number], focus: boolean) => void = () => {}
   /** A declaration is in another file. */
   onElsewhere: (file: string, place: [number, number]) => void = () => {}
@@ -159,7 +154,7 @@ export class Editor {
           this.steps.follow(update)
           if (update.docChanged && !update.transactions.some((t) => t.annotation(fromOutside))) {
             if (!update.transactions.some((t) => t.annotation(fromHost))) {
-              const made: Edit[] = []
+              const made: EditFact[] = []
               update.changes.iterChanges((from, to, _a, _b, insert) =>
                 made.push({ from, to, insert: insert.toString() }),
               )
@@ -335,7 +330,7 @@ export class Editor {
   }
 
   /** Edits that the engine made of a version of the text, as one step of the history. */
-  apply(edits: Edit[], version = this.version, name = 'Edit', held: Held[] = []): void {
+  apply(edits: EditFact[], version = this.version, name = 'Edit', held: Held[] = []): void {
     const effects = held.map((one) => holding.of(one))
     if (!edits.length && !effects.length) return
     const since = this.past.filter((p) => p.version >= version)
@@ -478,7 +473,7 @@ export class Editor {
 export const fileName = (path: string) => path.split(/[/\\]/).pop() ?? path
 
 /** The least replacement that makes one text of another. */
-function difference(old: string, text: string): Edit {
+function difference(old: string, text: string): EditFact {
   let start = 0
   const most = Math.min(old.length, text.length)
   while (start < most && old.charCodeAt(start) === text.charCodeAt(start)) start++

@@ -3,8 +3,9 @@
 import type { App } from './app'
 import { h } from './dom'
 import { inBase64 } from './foreign'
+import type { RemarkFact } from './protocol'
 import { LONGEST_LINK, packed, unpacked } from './share'
-import { changed, model, type Remark } from './state'
+import { changed, model } from './state'
 
 /** Endings of programs and model files, whose text replaces the program. */
 const PROGRAM = /\.(sdl|skt|ms2)$/i
@@ -49,7 +50,7 @@ export async function download(app: App, kind: string): Promise<void> {
     })
     const { mirrored } = app.view
     const half = mirrored && !FLAT.has(kind) ? `: the model's own side, which is mirrored in ${mirrored}` : ''
-    const remarks: Remark[] = frame.head.remarks ?? []
+    const remarks: RemarkFact[] = frame.head.remarks ?? []
     model.made = { file: names[0] ?? kind, remarks }
     changed('made')
     const count = remarks.length === 1 ? 'a remark is' : `${remarks.length} remarks are`
@@ -113,7 +114,7 @@ async function openCad(app: App, name: string, bytes: Uint8Array): Promise<void>
   app.shell.say(`Reading ${name}…`)
   const request = { name, data: inBase64(name, bytes), units: model.unit || 'mm' }
   const frame = await app.link.ask('import', request)
-  const remark = (message: string): Remark => ({ severity: 'warning', message, help: [], object: null })
+  const remark = (message: string): RemarkFact => ({ severity: 'warning', message, help: [], object: null })
   model.made = { file: name, remarks: frame.head.remarks.map(remark) }
   changed('made')
   const take = () => {

@@ -5,7 +5,8 @@ import { ink } from './colour'
 import { h, shown } from './dom'
 import { Gumball } from './gumball'
 import { type Link, Newest, Refused } from './link'
-import { type Fault, model, on } from './state'
+import type { EditFact, FaultFact, HandleFact } from './protocol'
+import { model, on } from './state'
 import { typed } from './typed'
 import type { Drawn, View } from './view'
 
@@ -13,7 +14,7 @@ export interface Handlers {
   select(name: string): void
   hover(name: string): void
   say(words: string): void
-  apply(edits: any[], version: number | undefined, name: string): void
+  apply(edits: EditFact[], version: number | undefined, name: string): void
   synced(): Promise<void>
   status(words: string): void
   open(name: string): void
@@ -23,20 +24,11 @@ export interface Handlers {
   corner(e: MouseEvent): boolean
 }
 
-interface Handle {
-  name: string
-  own: boolean
-  parameter: boolean
-  direction: number[]
-  value: number
-  range: [number, number] | null
-}
-
 interface Drag {
   item: Drawn
   start: Vector3
   target: Vector3
-  handles: Handle[]
+  handles: HandleFact[]
   own: string[]
   /** The numbers that follow now. */
   names: string[]
@@ -271,7 +263,8 @@ export class Hands {
         },
         label,
       )
-    const reach = (k: Handle) => Math.hypot(...k.direction) * (k.range ? k.range[1] - k.range[0] : Math.abs(k.value))
+    const reach = (k: HandleFact) =>
+      Math.hypot(...k.direction) * (k.range ? k.range[1] - k.range[0] : Math.abs(k.value))
     const listed = [...others]
       .sort((a, b) => Number(follow.includes(b.name)) - Number(follow.includes(a.name)) || reach(b) - reach(a))
       .slice(0, 6)
@@ -441,7 +434,7 @@ export class Hands {
     })
   }
 
-  private broken(drag: Drag): Fault[] {
+  private broken(drag: Drag): FaultFact[] {
     return model.faults.filter((f) => f.severity === 'error' && !drag.faults.has(f.message))
   }
 

@@ -6,9 +6,10 @@
 // of the document that it was made for; the host refuses one that is too old by sending the text again.
 
 import type { Text } from '@codemirror/state'
-import type { Edit, Editor } from './editor'
+import type { Editor } from './editor'
 import type { Facts } from './frame'
 import { LivingLink, WorkerEngine } from './living'
+import type { EditFact } from './protocol'
 
 interface Api {
   postMessage(message: unknown): void
@@ -83,7 +84,7 @@ export class Host {
     this.api.postMessage({ kind: 'download', name, data: btoa(raw) })
   }
 
-  private edit(before: Text, changes: Edit[]): void {
+  private edit(before: Text, changes: EditFact[]): void {
     if (!changes.length) return
     const all = changes.map(({ from, to, insert }) => ({ from: spot(before, from), to: spot(before, to), insert }))
     this.api.postMessage({ kind: 'edit', version: this.version, changes: all })

@@ -1,7 +1,7 @@
 // What answers the page: the server's engine through a socket, or the last scene of a file.
 
 import { type Facts, Frame } from './frame'
-import type { Requests } from './requests'
+import type { Requests } from './protocol'
 
 export class Refused extends Error {
   constructor(

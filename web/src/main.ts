@@ -24,13 +24,14 @@ import { GivenNumbers } from './numbers'
 import { Orientation } from './orientation'
 import { help, palette } from './palette'
 import { inspectorPanel, messagesPanel, parametersPanel, strip } from './panels'
+import type { ValueFact } from './protocol'
 import { Rooms } from './rooms'
 import { Saving } from './saving'
 import { SectionPlane } from './section'
 import { Sheets } from './sheets'
 import { makeShell, themes } from './shell'
 import { startPage } from './start'
-import { changed, model, on, type Watched } from './state'
+import { changed, model, on } from './state'
 import { tablesOf, tablesSheet } from './tables'
 import { buildToolbar } from './toolbar'
 import { treePanel } from './tree'
@@ -465,7 +466,7 @@ function askFloating(): void {
   if (!link.still) floated = window.setTimeout(() => floating.push(undefined), 150)
 }
 
-// Watched numbers follow the scene: at once while they are quick, else now and then, slow ones when the hand rests:
+// ValueFact numbers follow the scene: at once while they are quick, else now and then, slow ones when the hand rests:
 // a slider that moves does not wait for them.
 let took = 0
 let resting = 0
@@ -583,7 +584,7 @@ async function begin(hello: any): Promise<void> {
     // The scene of a file is loaded at once; that of a server is requested with all it draws.
     if (link.local) await link.ask('open')
     if (hello.watched) {
-      const immersed = hello.watched.find((w: Watched) => w.expression === IMMERSED)?.value
+      const immersed = hello.watched.find((w: ValueFact) => w.expression === IMMERSED)?.value
       model.floats = floats(view.mirrored, immersed)
       model.watched = usualOf(hello.watched, model.floats)
       changed('watched')

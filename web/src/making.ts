@@ -3,38 +3,22 @@
 
 import type { Vector3 } from 'three'
 import { h } from './dom'
-import type { Edit } from './editor'
+import type {} from './editor'
 import type { Link } from './link'
+import type { ArgumentFact, EditFact, KindFact } from './protocol'
 import { model, on } from './state'
 
-interface Field {
-  name: string
-  help: string
-  class: string
-  accepts: string[]
-  many: boolean
-  least: number
-  required: boolean
-  default: number | string | null
-  words: string[]
-}
-
-interface Kind {
-  name: string
-  class: string
+interface Kind extends KindFact {
   /** For a function or an operator: the kind that names its value. */
   made?: 'Set' | 'Field'
   /** What is written between the arguments of an operator. */
   operator?: string
-  about: string
-  also: string
-  fields: Field[]
 }
 
 export interface MakingActions {
   say(words: string): void
   select(name: string): void
-  apply(edits: Edit[], version: number, name: string): void
+  apply(edits: EditFact[], version: number, name: string): void
   /** Settles when the engine has all that was typed. */
   synced(): Promise<void>
 }
@@ -141,7 +125,7 @@ export class Making {
   private kinds: Kind[] = []
   private kind: Kind | null = null
   /** The field that is given what is picked. */
-  private active: Field | null = null
+  private active: ArgumentFact | null = null
   private adding: Promise<void> = Promise.resolve()
   /** Names of objects that are being added. */
   private readonly coming = new Set<string>()
@@ -251,7 +235,7 @@ export class Making {
   }
 
   /** Objects that an argument may be. */
-  private takes(field: Field): boolean {
+  private takes(field: ArgumentFact): boolean {
     return field.accepts.some((c) => !TYPED.includes(c))
   }
 
@@ -267,7 +251,7 @@ export class Making {
     this.fault.hidden = true
     this.named = h('input', { type: 'text', 'aria-label': 'name', spellcheck: 'false' })
     this.named.value = this.free(kind)
-    const row = (f: Field) => {
+    const row = (f: ArgumentFact) => {
       const words = f.words.length > 1 ? f.words : []
       const input = words.length
         ? h(
@@ -318,7 +302,7 @@ export class Making {
     this.inputs.get(first?.name ?? '')?.focus()
   }
 
-  private activate(field: Field): void {
+  private activate(field: ArgumentFact): void {
     this.active = field
     for (const row of this.panel.querySelectorAll<HTMLElement>('[data-field]'))
       row.classList.toggle('active', row.dataset.field === field.name)
@@ -371,7 +355,7 @@ export class Making {
     return true
   }
 
-  private spelled(f: Field): string {
+  private spelled(f: ArgumentFact): string {
     const text = this.inputs.get(f.name)!.value.trim()
     if (!text) return ''
     if (f.class === 'text' && !text.startsWith('"')) return `"${text}"`
@@ -387,7 +371,8 @@ export class Making {
       const [value, least, largest] = kind.fields.map((f) => this.spelled(f))
       return `param float ${name} = ${value || 0}${least && largest ? ` in [${least}, ${largest}]` : ''};`
     }
-    const few = (f: Field) => f.least > 1 && sets(this.inputs.get(f.name)!.value).length < f.least && kind.operator
+    const few = (f: ArgumentFact) =>
+      f.least > 1 && sets(this.inputs.get(f.name)!.value).length < f.least && kind.operator
     const missing = kind.fields.find((f) => (f.required && !this.spelled(f)) || few(f))
     if (missing)
       throw new Error(`${missing.name} is missing: ${few(missing) ? `at least ${missing.least}. ` : ''}${missing.help}`)

@@ -5,7 +5,8 @@ import { fileName } from './editor'
 import { FIGURES, unitOf } from './figures'
 import type { RequestKind, RequestOf } from './link'
 import type { GivenNumbers } from './numbers'
-import { changed, type Fault, model, on, type Param, type Remark } from './state'
+import type { FaultFact, ParamFact, RemarkFact } from './protocol'
+import { changed, model, on } from './state'
 
 export interface Actions {
   set(name: string, value: number): void
@@ -38,7 +39,7 @@ export interface Actions {
 }
 
 /** A range for a slider: the declared one, or one around the value. */
-export function rangeOf(p: Param): { low: number; high: number; stated: boolean } {
+export function rangeOf(p: ParamFact): { low: number; high: number; stated: boolean } {
   if (p.range) return { low: p.range[0], high: p.range[1], stated: true }
   if (p.default === 0) return { low: -1, high: 1, stated: false }
   const ends = [p.default / 2, p.default * 2].sort((a, b) => a - b)
@@ -68,7 +69,7 @@ export function parametersPanel(host: HTMLElement, act: Actions): void {
       slider: HTMLInputElement
       field: HTMLInputElement
       reset: HTMLButtonElement
-      p: Param
+      p: ParamFact
       wanted: number | null
       from: number
     }
@@ -77,7 +78,7 @@ export function parametersPanel(host: HTMLElement, act: Actions): void {
   const empty = h('p', { class: 'quiet' }, 'No parameters. Declare one: param float beam = 4 in [3, 5];')
   const box = h('div', { class: 'params' })
   host.append(box, empty)
-  const text = (p: Param) => (p.whole ? String(Math.round(p.value)) : shown(p.value, 7))
+  const text = (p: ParamFact) => (p.whole ? String(Math.round(p.value)) : shown(p.value, 7))
 
   function build(): void {
     box.textContent = ''
@@ -177,7 +178,7 @@ export function parametersPanel(host: HTMLElement, act: Actions): void {
     }
   }
 
-  function show({ p, slider, field }: { p: Param; slider: HTMLInputElement; field: HTMLInputElement }): void {
+  function show({ p, slider, field }: { p: ParamFact; slider: HTMLInputElement; field: HTMLInputElement }): void {
     if (!dragging(slider)) slider.value = String(p.value)
     if (document.activeElement !== field) field.value = text(p)
     slider.setAttribute('aria-valuetext', `${text(p)} ${model.unit}`.trim())
@@ -467,7 +468,7 @@ export function messagesPanel(host: HTMLElement, act: Actions): void {
   host.append(log)
   let timer = 0
   /** A message with its sign, and more words below it. */
-  function message(f: Remark, where: string, more: string[]): HTMLElement {
+  function message(f: RemarkFact, where: string, more: string[]): HTMLElement {
     const item = h(
       'div',
       { class: `message ${f.severity}` },
@@ -490,7 +491,7 @@ export function messagesPanel(host: HTMLElement, act: Actions): void {
     for (const words of more.filter(Boolean)) item.append(h('div', { class: 'more' }, words))
     return item
   }
-  function one(f: Fault): HTMLElement {
+  function one(f: FaultFact): HTMLElement {
     const where = f.file ? `${fileName(f.file)}:${f.line}` : f.line ? `line ${f.line}` : ''
     const found = [f.expected ? `expected ${f.expected}` : '', f.found ? `found ${f.found}` : '']
     const item = message(f, where, [...found, ...f.notes, ...f.help])

@@ -1,66 +1,18 @@
 // What the page knows of the model, and who wants to know when it changes.
 
-export interface Param {
-  name: string
-  value: number
-  default: number
-  range: [number, number] | null
-  whole: boolean
-  written: boolean
-  place: [number, number] | null
-}
-
-export interface Obj {
-  name: string
-  kind: string
-  class: string
-  state: 'ok' | 'failed' | 'blocked'
-  shown: boolean
-  parents: string[]
-}
-
-export interface Fault {
-  id: string
-  severity: 'error' | 'warning' | 'note'
-  message: string
-  place: [number, number] | null
-  line: number | null
-  file: string | null
-  /** Its place in that file. */
-  elsewhere: [number, number] | null
-  expected: string | null
-  found: string | null
-  notes: string[]
-  help: string[]
-  object: string | null
-  edit: { place: [number, number]; insert: string; title: string } | null
-}
-
-/** What the writer of a file has to say about it. */
-export interface Remark {
-  severity: Fault['severity']
-  message: string
-  help: string[]
-  object: string | null
-}
-
-export interface Watched {
-  expression: string
-  value?: unknown
-  error?: string
-}
+import type { FaultFact, ObjectFact, ParamFact, RemarkFact, ValueFact } from './protocol'
 
 export const model = {
   name: 'model',
-  params: [] as Param[],
-  objects: [] as Obj[],
+  params: [] as ParamFact[],
+  objects: [] as ObjectFact[],
   /** The files that it reads, by their full names. */
   files: [] as string[],
-  faults: [] as Fault[],
+  faults: [] as FaultFact[],
   printed: [] as string[],
   /** The last file that was made, and remarks about it. */
-  made: { file: '', remarks: [] as Remark[] },
-  watched: [] as Watched[],
+  made: { file: '', remarks: [] as RemarkFact[] },
+  watched: [] as ValueFact[],
   unit: '',
   program: true,
   /** Whether its hydrostatics mean something. */

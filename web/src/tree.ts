@@ -3,7 +3,8 @@
 import { h, store, stored } from './dom'
 import { type Item, openMenu } from './menu'
 import type { Actions } from './panels'
-import { model, type Obj, on } from './state'
+import type { ObjectFact } from './protocol'
+import { model, on } from './state'
 
 const GROUPS: [string, string[]][] = [
   ['Surfaces', ['surface']],
@@ -29,7 +30,7 @@ export function treePanel(host: HTMLElement, act: Actions & { hidden: Set<string
     }
   })
 
-  function groups(): [string, Obj[]][] {
+  function groups(): [string, ObjectFact[]][] {
     const word = search.value.trim().toLowerCase()
     const found = model.objects.filter(
       (o) => !word || o.name.toLowerCase().includes(word) || o.kind.toLowerCase().includes(word),
@@ -39,7 +40,7 @@ export function treePanel(host: HTMLElement, act: Actions & { hidden: Set<string
       ([title, classes]) =>
         [title, found.filter((o) => (classes.length ? classes.includes(o.class) : !known.has(o.class)))] as [
           string,
-          Obj[],
+          ObjectFact[],
         ],
     ).filter(([, all]) => all.length)
   }
@@ -94,7 +95,7 @@ export function treePanel(host: HTMLElement, act: Actions & { hidden: Set<string
     }
   }
 
-  function row(o: Obj, k: number, count: number): HTMLElement {
+  function row(o: ObjectFact, k: number, count: number): HTMLElement {
     const hidden = act.hidden.has(o.name) || !o.shown
     const eye = h(
       'button',

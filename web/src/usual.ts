@@ -1,7 +1,7 @@
 // Numbers that are watched at first, and whether the model floats: the engine's answer decides.
 
 import usual from '../../python/moldloft/workbench/usual.json'
-import type { Watched } from './state'
+import type { ValueFact } from './protocol'
 
 /** The figure by which a model floats. */
 export const IMMERSED = 'hydrostatics.volume'
@@ -14,7 +14,7 @@ export const floats = (mirrored: string, immersed: unknown) =>
 export const usualNumbers = (floating: boolean): string[] => (floating ? usual.floating : usual.other)
 
 /** Of the values of all of them those for the model. */
-export function usualOf(all: Watched[], floating: boolean): Watched[] {
+export function usualOf(all: ValueFact[], floating: boolean): ValueFact[] {
   const wanted = usualNumbers(floating)
   return all.filter((w) => wanted.includes(w.expression))
 }

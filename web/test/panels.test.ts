@@ -1,9 +1,9 @@
 import { expect, test } from 'vitest'
 import { commonPrefix, rangeOf, stepped } from '../src/panels'
-import type { Param } from '../src/state'
+import type { ParamFact } from '../src/protocol'
 
 const param = (value: number, range: [number, number] | null = null) =>
-  ({ name: 'p', value, default: value, range, whole: false, written: true, place: null }) as Param
+  ({ name: 'p', value, default: value, range, whole: false, written: true, place: null }) as ParamFact
 
 test('a slider has the declared range, or one around the value', () => {
   expect(rangeOf(param(3, [1, 9]))).toEqual({ low: 1, high: 9, stated: true })

@@ -1,6 +1,10 @@
 //! Data of a document as JSON: parameters, objects, diagnostics, details of one object.
 
 use crate::drag::own_numbers;
+use crate::replies::{
+    ArgumentFact, CorrectionFact, FaultFact, KindFact, ObjectFact, ObjectState, ParamFact,
+    RemarkFact, TextRange, ValueFact,
+};
 use crate::text::unit;
 use moldloft_diag::{Diagnostic, Span};
 use moldloft_document::{ArgumentInText, Document, ReadAs};
@@ -8,22 +12,26 @@ use moldloft_model::Object;
 use moldloft_num::Vec3;
 use moldloft_registry::{Class, DefaultValue, FieldSpec, Registry, Row, Unit, Value as Quantity};
 use rustc_hash::FxHasher;
+use serde::Serialize;
 use serde_json::{Value, json};
 use std::hash::{Hash, Hasher};
 
 /// Maximum number of list items shown.
 const MOST_SHOWN: usize = 8;
 
-/// A span of the main text in UTF-16 units; null for other texts.
-pub fn place(document: &Document, text: &str, span: Span) -> Value {
-    if !span.is_known() || document.sources().ids().next() != Some(span.file) {
-        return Value::Null;
-    }
-    json!([unit(text, span.start as usize), unit(text, span.end as usize)])
+/// A header entry of facts.
+pub fn json_of(facts: impl Serialize) -> Value {
+    serde_json::to_value(facts).unwrap_or_default()
+}
+
+/// A span of the main text; `None` for other texts.
+pub fn place(document: &Document, text: &str, span: Span) -> Option<TextRange> {
+    let known = span.is_known() && document.sources().ids().next() == Some(span.file);
+    known.then(|| [unit(text, span.start as usize), unit(text, span.end as usize)])
 }
 
 /// A span of another file: its name, and the place in UTF-16 units.
-pub fn elsewhere(document: &Document, span: Span) -> Option<(String, [usize; 2])> {
+pub fn elsewhere(document: &Document, span: Span) -> Option<(String, TextRange)> {
     let sources = document.sources();
     if !span.is_known() || sources.ids().next() == Some(span.file) {
         return None;
@@ -45,17 +53,15 @@ pub fn files(read: &[ReadAs]) -> Value {
 }
 
 /// The parameters.
-pub fn params(document: &Document, text: &str) -> Value {
-    let one = |p: &moldloft_document::Param| {
-        json!({
-            "name": p.name,
-            "value": p.value,
-            "default": p.default,
-            "range": p.range.map(|(a, b)| [a, b]),
-            "whole": p.is_int,
-            "written": document.param_is_number(&p.name),
-            "place": place(document, text, p.span),
-        })
+pub fn params(document: &Document, text: &str) -> Vec<ParamFact> {
+    let one = |p: &moldloft_document::Param| ParamFact {
+        name: p.name.clone(),
+        value: p.value,
+        default: p.default,
+        range: p.range.map(|(a, b)| [a, b]),
+        whole: p.is_int,
+        written: document.param_is_number(&p.name),
+        place: place(document, text, p.span),
     };
     document.params().iter().map(one).collect()
 }
@@ -78,72 +84,64 @@ pub fn objects_stamp(document: &Document) -> u64 {
 }
 
 /// The objects in the order of declaration.
-pub fn objects(document: &Document) -> Value {
+pub fn objects(document: &Document) -> Vec<ObjectFact> {
     let graph = document.graph();
     let state = |o: &Object<f64>| match (o.fault(), o.blocked_by()) {
-        (Some(_), _) => "failed",
-        (_, Some(_)) => "blocked",
-        _ => "ok",
+        (Some(_), _) => ObjectState::Failed,
+        (_, Some(_)) => ObjectState::Blocked,
+        _ => ObjectState::Ok,
     };
-    let one = |o: &Object<f64>| {
-        let parents = o.parents.iter().filter_map(|k| Some(&*graph.get(*k)?.name));
-        json!({
-            "name": &*o.name,
-            "kind": o.row.name,
-            "class": o.value().map_or(o.row.class, Quantity::class).name(),
-            "state": state(o),
-            "shown": o.head.shown(),
-            "parents": parents.collect::<Vec<_>>(),
-        })
+    let parents = |o: &Object<f64>| -> Vec<String> {
+        o.parents.iter().filter_map(|k| Some(graph.get(*k)?.name.to_string())).collect()
+    };
+    let one = |o: &Object<f64>| ObjectFact {
+        name: o.name.to_string(),
+        kind: o.row.name.to_string(),
+        class: o.value().map_or(o.row.class, Quantity::class).name(),
+        state: state(o),
+        shown: o.head.shown(),
+        parents: parents(o),
     };
     graph.objects().map(one).collect()
 }
 
 /// Diagnostics with their positions in the main text.
-pub fn diagnostics(document: &Document, text: &str, all: &[Diagnostic]) -> Value {
+pub fn diagnostics(document: &Document, text: &str, all: &[Diagnostic]) -> Vec<FaultFact> {
     let sources = document.sources();
     let one = |d: &Diagnostic| {
         let data = d.to_data(sources);
-        let span = d.span();
-        let file = data.primary.as_ref().map(|l| &l.file);
-        let home = place(document, text, span);
-        let edit = d.correction(sources).map(|e| {
-            let at = place(document, text, e.span);
-            json!({"place": at, "insert": e.replacement, "title": e.title})
+        let home = place(document, text, d.span());
+        let edit = d.correction(sources).and_then(|e| {
+            let place = place(document, text, e.span)?;
+            Some(CorrectionFact { place, insert: e.replacement, title: e.title })
         });
-        json!({
-            "id": data.id,
-            "severity": data.severity,
-            "message": data.message,
-            "place": home,
-            "line": data.primary.as_ref().map(|l| l.line),
-            "file": file.filter(|_| home.is_null()),
-            "elsewhere": elsewhere(document, span).map(|(_, place)| place),
-            "expected": data.expected,
-            "found": data.found,
-            "notes": data.notes,
-            "help": data.help,
-            "object": data.object,
-            "edit": edit.filter(|e| !e["place"].is_null()),
-        })
+        FaultFact {
+            id: data.id,
+            severity: data.severity,
+            message: data.message,
+            place: home,
+            line: data.primary.as_ref().map(|l| l.line),
+            file: data.primary.map(|l| l.file).filter(|_| home.is_none()),
+            elsewhere: elsewhere(document, d.span()).map(|(_, place)| place),
+            expected: data.expected,
+            found: data.found,
+            notes: data.notes,
+            help: data.help,
+            object: data.object,
+            edit,
+        }
     };
     all.iter().map(one).collect()
 }
 
 /// Remarks about a file: diagnostics without positions.
-pub fn remarks(document: &Document, all: &[Diagnostic]) -> Value {
+pub fn remarks(document: &Document, all: &[Diagnostic]) -> Vec<RemarkFact> {
     let one = |d: &Diagnostic| {
         let data = d.to_data(document.sources());
         let expected = data.expected.map(|e| format!("expected {e}"));
         let found = data.found.map(|f| format!("found {f}"));
-        let help: Vec<String> =
-            expected.into_iter().chain(found).chain(data.notes).chain(data.help).collect();
-        json!({
-            "severity": data.severity,
-            "message": data.message,
-            "help": help,
-            "object": data.object,
-        })
+        let help = expected.into_iter().chain(found).chain(data.notes).chain(data.help).collect();
+        RemarkFact { severity: data.severity, message: data.message, help, object: data.object }
     };
     all.iter().map(one).collect()
 }
@@ -178,59 +176,61 @@ pub fn quantity(value: &Quantity<f64>) -> Value {
 }
 
 /// Values of expressions, with derivatives with respect to a parameter.
-pub fn values(document: &mut Document, expressions: &[String], by: Option<&str>) -> Value {
+pub fn values(document: &mut Document, expressions: &[String], by: Option<&str>) -> Vec<ValueFact> {
     let said = |d: &[Diagnostic]| d.first().map_or("no value".to_string(), |d| d.message.clone());
     let mut one = |text: &String| {
-        let mut row = json!({"expression": text});
+        let mut fact = ValueFact { expression: text.clone(), ..ValueFact::default() };
         match document.eval(text) {
-            Ok(value) => row["value"] = quantity(&value),
-            Err(diagnostics) => row["error"] = said(&diagnostics).into(),
+            Ok(value) => fact.value = Some(quantity(&value)),
+            Err(diagnostics) => fact.error = Some(said(&diagnostics)),
         }
-        if let Some(by) = by.filter(|_| row.get("error").is_none()) {
+        if let Some(by) = by.filter(|_| fact.error.is_none()) {
             match document.derivatives(std::slice::from_ref(text), &[by.to_string()]) {
-                Ok(columns) => row["derivative"] = quantity(&columns[0][0]),
-                Err(diagnostics) => row["no_derivative"] = said(&diagnostics).into(),
+                Ok(columns) => fact.derivative = Some(quantity(&columns[0][0])),
+                Err(diagnostics) => fact.no_derivative = Some(said(&diagnostics)),
             }
         }
-        row
+        fact
     };
     expressions.iter().map(&mut one).collect()
 }
 
 /// The kinds of objects for a form: name, type and permitted values of each argument.
-pub fn kinds(registry: &Registry) -> Value {
+pub fn kinds(registry: &Registry) -> Vec<KindFact> {
     let field = |f: &FieldSpec| {
         let accepts = Class::ALL.iter().filter(|c| **c != Class::Any && f.class.accepts(**c));
-        json!({
-            "name": f.name,
-            "help": f.help,
-            "class": f.class.name(),
-            "accepts": accepts.map(|c| c.name()).collect::<Vec<_>>(),
-            "many": f.many,
-            "least": f.min_items,
-            "required": f.default.is_none(),
-            "default": match f.default {
+        ArgumentFact {
+            name: f.name,
+            help: f.help,
+            class: f.class.name(),
+            accepts: accepts.map(|c| c.name()).collect(),
+            many: f.many,
+            least: f.min_items,
+            required: f.default.is_none(),
+            default: match f.default {
                 Some(DefaultValue::Number(x)) => number(x),
                 Some(DefaultValue::Text(text)) => json!(text),
                 _ => Value::Null,
             },
-            "words": if f.class == Class::Text { quoted(f.help) } else { Vec::new() },
-        })
+            words: if f.class == Class::Text { quoted(f.help) } else { Vec::new() },
+        }
     };
-    let row = |row: &Row| {
-        json!({
-            "name": row.name,
-            "class": row.class.name(),
-            "about": row.summary(),
-            "also": row.doc.lines().find_map(|l| l.trim().strip_prefix("Also looked for as: ")),
-            "fields": row.fields.iter().map(field).collect::<Vec<_>>(),
-        })
+    let also = |row: &Row| {
+        let words = row.doc.lines().find_map(|l| l.trim().strip_prefix("Also looked for as: "));
+        words.map(str::to_string)
     };
-    registry.rows().filter(|r| r.kind).map(|r| row(r)).collect()
+    let kind = |row: &Row| KindFact {
+        name: row.name.to_string(),
+        class: row.class.name(),
+        about: row.summary().to_string(),
+        also: also(row),
+        fields: row.fields.iter().map(field).collect(),
+    };
+    registry.rows().filter(|r| r.kind).map(|r| kind(r)).collect()
 }
 
 /// The words in double quotes in a help text: the permitted values of a text argument.
-fn quoted(help: &str) -> Vec<&str> {
+fn quoted(help: &'static str) -> Vec<&'static str> {
     help.split('"').skip(1).step_by(2).collect()
 }
 
@@ -320,10 +320,8 @@ pub fn inspected(
         expressions.insert(0, name.to_string());
     }
     let mut values = values(document, &expressions, by);
-    if let Some(rows) = values.as_array_mut() {
-        rows.retain(|row| row.get("error").is_none());
-    }
+    values.retain(|fact| fact.error.is_none());
     let mut report = report;
-    report["values"] = values;
+    report["values"] = json_of(values);
     Some(report)
 }

@@ -28,6 +28,7 @@ mod fields;
 pub mod frame;
 mod overlay;
 mod patches;
+mod replies;
 mod reply;
 mod request;
 mod scene;

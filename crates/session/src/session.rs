@@ -1,10 +1,11 @@
 //! The session: processes requests in order, each with a reply.
 
 use crate::drag::{Drag, HandleKind};
-use crate::facts;
+use crate::facts::{self, json_of};
 use crate::fields::field;
 use crate::frame::{ReplyFrame, ViewerCache};
 use crate::overlay::Overlays;
+use crate::replies::{AdjustmentFact, EditFact, HandleFact};
 use crate::request::{Adjusted, Ask, Request};
 use crate::scene::Scene;
 use crate::text::{byte, changed, difference, unit};
@@ -184,7 +185,8 @@ impl Session {
             Err(Refusal::Diagnostics(all)) => {
                 let said = all.first().map_or("refused".to_string(), |d| d.message.clone());
                 frame.put("error", said);
-                frame.put("faults", facts::diagnostics(&self.document, &self.text, &all));
+                let faults = facts::diagnostics(&self.document, &self.text, &all);
+                frame.put("faults", json_of(faults));
             }
         }
         if changes {
@@ -211,14 +213,15 @@ impl Session {
         let document = &self.document;
         let known = &mut self.tabs.entry(tab).or_default().known;
         known.scene(frame, self.scene.items());
-        known.fact(frame, "params", facts::params(document, &self.text));
+        known.fact(frame, "params", json_of(facts::params(document, &self.text)));
         let stamp = facts::objects_stamp(document);
-        known.stamped(frame, "objects", stamp, || facts::objects(document));
+        known.stamped(frame, "objects", stamp, || json_of(facts::objects(document)));
         let mut diagnostics = document.diagnostics();
         // A diagnostic of the run with the same id is more precise.
         let fault = self.scene.fault().filter(|f| diagnostics.iter().all(|d| d.id != f.id));
         diagnostics.extend(fault.cloned());
-        known.fact(frame, "diagnostics", facts::diagnostics(document, &self.text, &diagnostics));
+        let faults = facts::diagnostics(document, &self.text, &diagnostics);
+        known.fact(frame, "diagnostics", json_of(faults));
         known.fact(frame, "reads", facts::files(&self.texts.files()));
         known.fact(frame, "printed", document.printed().iter().take(1000).cloned().collect());
         known.fact(frame, "mirror", document.symmetry().into());
@@ -264,7 +267,7 @@ impl Session {
             Ask::Measure => self.measure(tab, frame),
             Ask::Evaluate { expressions, by } => {
                 let values = facts::values(&mut self.document, &expressions, by.as_deref());
-                frame.put("values", values);
+                frame.put("values", json_of(values));
             }
             Ask::Show { contours, revealed } => {
                 self.scene.contours = contours.unwrap_or(self.scene.contours);
@@ -315,7 +318,7 @@ impl Session {
                 }
             }
             Ask::Rename { offset, new } => self.rename(offset, &new, frame)?,
-            Ask::Kinds => frame.put("kinds", facts::kinds(self.document.registry())),
+            Ask::Kinds => frame.put("kinds", json_of(facts::kinds(self.document.registry()))),
             Ask::Add { statement } => self.rewrite(|d| d.add(&statement), frame)?,
             Ask::Delete { name } => self.rewrite(|d| d.delete(&name).map(drop), frame)?,
             Ask::Duplicate { name } => {
@@ -408,7 +411,7 @@ impl Session {
     }
 
     fn put_place(&self, span: moldloft_diag::Span, frame: &mut ReplyFrame) {
-        frame.put("place", facts::place(&self.document, &self.text, span));
+        frame.put("place", json_of(facts::place(&self.document, &self.text, span)));
         if let Some((file, place)) = facts::elsewhere(&self.document, span) {
             frame.put("elsewhere", json!({"file": file, "place": place}));
         }
@@ -419,9 +422,9 @@ impl Session {
         let spans = self.document.renamed(byte(&self.text, offset) as u32, new)?;
         let edit = |s: moldloft_diag::Span| {
             let at = |b: u32| unit(&self.text, b as usize);
-            json!({"from": at(s.start), "to": at(s.end), "insert": new})
+            EditFact { from: at(s.start), to: at(s.end), insert: new.to_string() }
         };
-        frame.put("edits", spans.into_iter().map(edit).collect::<Vec<_>>());
+        frame.put("edits", json_of(spans.into_iter().map(edit).collect::<Vec<_>>()));
         Ok(())
     }
 
@@ -447,7 +450,7 @@ impl Session {
     /// hydrostatics.
     fn measure(&mut self, tab: u64, frame: &mut ReplyFrame) {
         let expressions = self.tabs.entry(tab).or_default().watched.clone();
-        frame.put("watched", facts::values(&mut self.document, &expressions, None));
+        frame.put("watched", json_of(facts::values(&mut self.document, &expressions, None)));
     }
 
     fn take_text(&mut self, text: String) {
@@ -496,25 +499,21 @@ impl Session {
 
     fn put_edits(&self, frame: &mut ReplyFrame, new: &str) {
         let edit = difference(&self.text, new);
-        let edits =
-            edit.map(|(from, to, insert)| json!({"from": from, "to": to, "insert": insert}));
-        frame.put("edits", edits.into_iter().collect::<Vec<_>>());
+        let edits = edit.map(|(from, to, insert)| EditFact { from, to, insert: insert.into() });
+        frame.put("edits", json_of(edits.into_iter().collect::<Vec<_>>()));
     }
 
     fn drag_begin(&mut self, object: &str, at: &[f64], frame: &mut ReplyFrame) -> Answer {
         let drag = Drag::begin(&mut self.document, object, at)?;
-        let rows = drag.handles.iter().map(|h| {
-            let own = h.kind == HandleKind::Own;
-            json!({
-                "name": h.name,
-                "own": own,
-                "parameter": h.kind == HandleKind::Parameter,
-                "direction": h.direction.to_array(),
-                "value": h.value,
-                "range": h.range.map(|(a, b)| [a, b]),
-            })
+        let rows = drag.handles.iter().map(|h| HandleFact {
+            name: h.name.clone(),
+            own: h.kind == HandleKind::Own,
+            parameter: h.kind == HandleKind::Parameter,
+            direction: h.direction.to_array(),
+            value: h.value,
+            range: h.range.map(|(a, b)| [a, b]),
         });
-        frame.put("handles", rows.collect::<Vec<_>>());
+        frame.put("handles", json_of(rows.collect::<Vec<_>>()));
         let own = drag.handles.iter().filter(|h| h.kind == HandleKind::Own);
         frame.put("own", own.map(|h| h.name.clone()).collect::<Vec<_>>());
         self.drag = Some(drag);
@@ -544,10 +543,13 @@ impl Session {
             };
             Refusal::Words(faults.iter().map(one).collect::<Vec<_>>().join("; "))
         })?;
-        let values = found.adjustments.iter().map(
-            |a| json!({"name": a.name, "before": a.before, "after": a.after, "share": a.share}),
-        );
-        frame.put("adjustments", values.collect::<Vec<_>>());
+        let values = found.adjustments.iter().map(|a| AdjustmentFact {
+            name: a.name.clone(),
+            before: a.before,
+            after: a.after,
+            share: a.share,
+        });
+        frame.put("adjustments", json_of(values.collect::<Vec<_>>()));
         let reached = targets.iter().zip(&found.reached);
         frame.put("reached", reached.map(|(t, x)| json!([t.expression, x])).collect::<Vec<_>>());
         frame.put("steps", found.steps);
@@ -663,7 +665,7 @@ impl Session {
         }
         frame.put("files", parts);
         let remarks = facts::remarks(&self.document, self.document.export_remarks());
-        frame.put("remarks", remarks);
+        frame.put("remarks", json_of(remarks));
         Ok(())
     }
 }

@@ -3,7 +3,7 @@
 
 mod drags;
 mod overlays;
-mod requests;
+mod protocol;
 mod scenes;
 mod statements;
 mod texts_beside;

@@ -1,4 +1,4 @@
-// The requests of the engine, by their kinds. Made by `crates/session/tests/it/requests.rs`; see there.
+// The requests of the engine by their kinds, and facts of its replies. Made by `crates/session/tests/it/protocol.rs`.
 
 /** Options of a number that may change. */
 export interface Adjusted {
@@ -231,4 +231,184 @@ export interface Requests {
   words: Record<never, never>
   /** Does nothing; the reply shows that the engine is running. */
   ping: Record<never, never>
+}
+
+/** Offsets of a part of the text. */
+export type TextRange = [number, number]
+
+/** A parameter of the model. */
+export interface ParamFact {
+  /** Its name. */
+  name: string
+  /** Its value. */
+  value: number
+  /** The value that the text gives it. */
+  default: number
+  /** Its range. */
+  range: [number, number] | null
+  /** True for whole numbers. */
+  whole: boolean
+  /** True when the text has it as a number. */
+  written: boolean
+  /** Its declaration. */
+  place: TextRange | null
+}
+
+/** State of an object. */
+export type ObjectState = 'ok' | 'failed' | 'blocked'
+
+/** An object of the model. */
+export interface ObjectFact {
+  /** Its name. */
+  name: string
+  /** Its kind. */
+  kind: string
+  /** The class of its value. */
+  class: string
+  /** Its state. */
+  state: ObjectState
+  /** True unless it is hidden by the text. */
+  shown: boolean
+  /** The names of the objects that it is made of. */
+  parents: string[]
+}
+
+/** A correction of the text. */
+export interface CorrectionFact {
+  /** What is replaced. */
+  place: TextRange
+  /** The replacement. */
+  insert: string
+  /** Its title. */
+  title: string
+}
+
+/** A diagnostic. */
+export interface FaultFact {
+  /** Stable name of the kind of fault. */
+  id: string
+  /** `error`, `warning` or `note`. */
+  severity: string
+  /** The message. */
+  message: string
+  /** Its place in the main text. */
+  place: TextRange | null
+  /** Its line, from 1. */
+  line: number | null
+  /** The file, if it is not the main one. */
+  file: string | null
+  /** Its place in that file. */
+  elsewhere: TextRange | null
+  /** Expected input. */
+  expected: string | null
+  /** Found input. */
+  found: string | null
+  /** Background. */
+  notes: string[]
+  /** Ways to fix it. */
+  help: string[]
+  /** The object at fault. */
+  object: string | null
+  /** A change of the main text that fixes it. */
+  edit: CorrectionFact | null
+}
+
+/** A remark of the writer of a file. */
+export interface RemarkFact {
+  /** `error`, `warning` or `note`. */
+  severity: string
+  /** The message. */
+  message: string
+  /** What was expected and found, background and remedies. */
+  help: string[]
+  /** The object. */
+  object: string | null
+}
+
+/** The value of an expression: a number, numbers, a text, the name of a class, or a summary of an array. */
+export interface ValueFact {
+  /** The expression. */
+  expression: string
+  /** Its value. */
+  value?: unknown
+  /** The reason why it has none. */
+  error?: string
+  /** Its derivative, if one was requested. */
+  derivative?: unknown
+  /** The reason why it has none. */
+  no_derivative?: string
+}
+
+/** An argument of a kind, for a form. */
+export interface ArgumentFact {
+  /** Its name. */
+  name: string
+  /** A line of help. */
+  help: string
+  /** Its class. */
+  class: string
+  /** The classes of objects that it accepts. */
+  accepts: string[]
+  /** True for a list. */
+  many: boolean
+  /** Least length of a list. */
+  least: number
+  /** True without a default. */
+  required: boolean
+  /** Its default. */
+  default: unknown
+  /** The permitted words of a text. */
+  words: string[]
+}
+
+/** A kind of objects. */
+export interface KindFact {
+  /** Its name. */
+  name: string
+  /** The class of its value. */
+  class: string
+  /** Its first sentence. */
+  about: string
+  /** Other words by which it is looked for. */
+  also: string | null
+  /** Its arguments. */
+  fields: ArgumentFact[]
+}
+
+/** A change of the text. */
+export interface EditFact {
+  /** Where the replaced text begins. */
+  from: number
+  /** Where it ends. */
+  to: number
+  /** The replacement. */
+  insert: string
+}
+
+/** A number that moves a dragged point. */
+export interface HandleFact {
+  /** Its name. */
+  name: string
+  /** True for a number of the object itself. */
+  own: boolean
+  /** True for a parameter of the model. */
+  parameter: boolean
+  /** Derivative of the point by the number. */
+  direction: [number, number, number]
+  /** Its value. */
+  value: number
+  /** Its range. */
+  range: [number, number] | null
+}
+
+/** A number that was adjusted to reach a target. */
+export interface AdjustmentFact {
+  /** Its name. */
+  name: string
+  /** Its value before. */
+  before: number
+  /** Its value now. */
+  after: number
+  /** Its fraction of the weighted change, 0 to 1. */
+  share: number
 }
