@@ -97,12 +97,51 @@ impl Programs {
         format!("({})", self.number(depth))
     }
 
+    /// A text; the variables are `t`, `w` and, in routines, `own`.
+    fn text(&mut self, depth: usize) -> String {
+        if depth == 0 || self.random.chance(30) {
+            return match self.random.below(8) {
+                0 | 1 => format!("\"{}\"", self.random.pick::<&str>(&["", "a", "ab", "b", "é"])),
+                2 if self.random.chance(self.faults) => self.number(0),
+                3 if self.local => "own".into(),
+                2..=5 => "t".into(),
+                _ => "words".into(),
+            };
+        }
+        let d = depth - 1;
+        match self.random.below(5) {
+            0 | 1 => format!("{} + {}", self.text(d), self.text(d)),
+            2 => format!("({})", self.text(d)),
+            3 => format!(
+                "format(\"{}\", {}, {})",
+                self.random.pick::<&str>(&["%g|%g", "%d %s", "%5.2f%s", "%s", "%%%-6g", "%q"]),
+                self.number(1),
+                if self.random.chance(50) { self.text(d) } else { self.number(1) }
+            ),
+            _ => format!("format({}, {})", self.text(d), self.number(d)),
+        }
+    }
+
+    fn of_texts(&mut self) -> String {
+        match self.random.below(9) {
+            0 | 1 => format!("t = {};", self.text(2)),
+            2 => format!("words = {};", self.text(1)),
+            3 => format!("t += {};", self.text(1)),
+            4 => format!("string late = {}; t = late;", self.text(1)),
+            5 => format!("string {};", self.random.pick::<&str>(&["late", "t"])),
+            6 => "print t;".into(),
+            7 => format!("x = same({}, {});", self.text(1), self.text(1)),
+            _ => format!("longer({}, t);", self.text(1)),
+        }
+    }
+
     fn relation(&mut self) -> &'static str {
         self.random.pick::<&str>(&["<", ">", "<=", ">=", "==", "!="])
     }
 
     fn condition(&mut self) -> String {
-        match self.random.below(7) {
+        match self.random.below(8) {
+            7 => format!("{} {} {}", self.text(1), self.relation(), self.text(1)),
             0 => format!(
                 "{} {} {} and {} > 0",
                 self.number(1),
@@ -125,6 +164,9 @@ impl Programs {
     }
 
     fn statement(&mut self, depth: usize) -> String {
+        if self.random.chance(15) {
+            return self.of_texts();
+        }
         let odd = self.random.chance(12);
         if odd {
             return match self.random.below(15) {
@@ -208,7 +250,9 @@ impl Programs {
     fn program(&mut self) -> String {
         let mut text = String::from(
             "param float p = 1.5;\nfloat x = 1, y = .5, z = -2; int i = 1, n = 3;\nfarray a[5]; a[1] = 1; a[3] = x;\n\
-             farray b[3,4] = 0.5; curve c[3];\n\
+             farray b[3,4] = 0.5; curve c[3]; string t = \"a\", words = \"b c\";\n\
+             function float same(string own, string other) { if (own == other) return 1; own += other; return own < t; }\n\
+             subroutine longer(string own, returned string other) { if (other < \"zzzz\") other += own + words; else other = own; }\n\
              function float small(float v) { while (|v| > 1e4) v /= 1024; return v; }\n\
              function float f(float m, float v) { if (m < 1) return v; if (m > 20) return 20; float w = f(m - 1, v*0.5); return w + m; }\n\
              function float quick(float t, float r) { return sqrt(|t|)*r^2 + t/(r + 1) - mod(t, 3); }\n\
@@ -219,12 +263,12 @@ impl Programs {
         self.local = true;
         let body: Vec<String> = (0..3).map(|_| self.statement(2)).collect();
         text += &format!(
-            "function float g(float u) {{ float v = u*2; int k = 2; float w = 0;\n{}\nreturn small(v + w); }}\n",
+            "function float g(float u) {{ float v = u*2; int k = 2; float w = 0; string own = format(\"%g\", u);\n{}\nreturn small(v + w); }}\n",
             body.join("\n")
         );
         let body: Vec<String> = (0..2).map(|_| self.statement(1)).collect();
         text += &format!(
-            "subroutine s(float u, int k) {{ float v = 1, w = 2;\n{}\n}}\n",
+            "subroutine s(float u, int k) {{ float v = 1, w = 2; string own;\n{}\n}}\n",
             body.join("\n")
         );
         self.local = false;
@@ -247,6 +291,7 @@ pub(crate) fn bits(value: &Value<f64>) -> Vec<u64> {
         Value::Numbers(a) => a.items.iter().map(of).collect(),
         Value::Vector(v) => v.to_array().iter().map(of).collect(),
         Value::Vectors(a) => a.planes.iter().flatten().map(of).collect(),
+        Value::Text(text) => text.bytes().map(u64::from).collect(),
         _ => Vec::new(),
     }
 }
@@ -319,7 +364,7 @@ fn code_does_what_the_interpreter_does() {
 }
 
 /// Programs with something of their own: each was written for a rule of the language.
-const PROGRAMS: [&str; 13] = [
+const PROGRAMS: [&str; 15] = [
     // A fault in the middle of a call, of a loop, of a recursion.
     "float s = 0; farray a[3]; function float f(float k) { a[k] = k; return 1/(3 - k); } for (k = 1:5) s += f(k);",
     "function float f(float n) { if (n < 1) return sqrt(-1); return f(n - 1) + 1; } float s = 0; for (k = 1:3) s += f(k);",
@@ -342,6 +387,9 @@ const PROGRAMS: [&str; 13] = [
     "function float f(float x) { if (x > 2) return x; } function int g() { return 1.5; } subroutine h(float x) { if (x > 1) break; x = 1/0; } float s = 0; for (k = 1:4) { s += f(k); s += g(); h(k); }",
     // Short functions: steps, faults and declarations that fail in them.
     "function float q(float t) { return 1/(t - 2); } function float f(float n) { if (n < 1) return q(2); return q(n)*f(n - 1) + q(q(2)); } for (k = 1:3) { float u = q(k) + f(k); float v = u + q(2*k); float s = v; }",
+    // Texts: of the file, of a routine, by reference, of a loop's own; joined with a number, and by a pattern that is wrong.
+    "string t = \"a\", u; int n = 0; function float size(string own) { t += own; string more; more = own + t; if (more == \"aaa\") return 1; return 2; } for (k = 1:4) { string w = format(\"%d\", k); u = w + t; n += size(w); if (u > w) t = u; u += \"x\"; string v = t + k; v = v + w; w = format(\"%d\", k/2); string r = format(\"%q\", k) + t; }",
+    "string names[2] = {\"x\", \"y\"}, t; subroutine longer(returned string own) { own += own; own = own + \"e\"; } for (k = 1:5) { longer(t); foreach (w in names) { t += w; if (w == t or t != \"\") t = w; } t = names[k]; float z = t == k; if (not t) t = 3; t -= w; }",
     // Subscripts of subscripts, and which fault comes first.
     "farray a[3] = 1, b[3,3] = 2; float s = 0; for (k = 1:5) { s += b[k, a[k/2]]; s += b[9, 1/0]; a[a[k]*4] = b[1/0, k]; farray q[0, 1/0]; }",
 ];

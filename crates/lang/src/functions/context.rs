@@ -439,7 +439,7 @@ fn flatten<T: Real>(value: &Value<T>, out: &mut Vec<FormatArgument>) -> Result<(
     let number = |x: T| FormatArgument::Number(x.re() + 0.0);
     match value {
         Value::Number(x) => out.push(number(*x)),
-        Value::Text(text) => out.push(FormatArgument::Text(text.to_string())),
+        Value::Text(text) => out.push(FormatArgument::Text(text.clone())),
         Value::Vector(v) => out.extend(v.to_array().map(number)),
         Value::Point(p) => out.extend(p.xyz.to_array().map(number)),
         Value::Numbers(a) => out.extend(a.items.iter().map(|&x| number(x))),

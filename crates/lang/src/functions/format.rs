@@ -1,6 +1,8 @@
 //! `format("%12.6f", x)`: numbers as text, by the directives of C.
 
 use moldloft_diag::Diagnostic;
+use std::fmt::Write as _;
+use std::sync::Arc;
 
 /// Argument of a format.
 #[derive(Clone, Debug, PartialEq)]
@@ -8,7 +10,7 @@ pub enum FormatArgument {
     /// A number.
     Number(f64),
     /// A text.
-    Text(String),
+    Text(Arc<str>),
 }
 
 /// The widest field and the most digits.
@@ -19,44 +21,66 @@ const WIDEST: usize = 1_000;
 /// # Errors
 /// For directives that do not exist, or items that do not fit them.
 pub fn format(pattern: &str, items: &[FormatArgument]) -> Result<String, Diagnostic> {
-    let pieces = parse(pattern)?;
-    let mut out = String::new();
-    let mut items = items.iter().peekable();
-    let takes = pieces.iter().any(|p| matches!(p, FormatPiece::Directive(_)));
-    loop {
-        for piece in &pieces {
-            match piece {
-                FormatPiece::Text(text) => out.push_str(text),
-                FormatPiece::Directive(d) => match items.next() {
-                    Some(item) => out.push_str(&d.spell(item)?),
-                    // The format ends where its values are used up.
-                    None if !out.is_empty() => return Ok(out),
-                    None => {
-                        return Err(Diagnostic::error(
-                            "missing-argument",
-                            "the format needs a value that is not given",
-                        )
-                        .expected(format!("a value for %{}", d.letter)));
-                    }
-                },
+    FormatPattern::of(pattern)?.spelled(items)
+}
+
+/// A format that was read.
+#[derive(Debug)]
+pub struct FormatPattern(Vec<FormatPiece>);
+
+impl FormatPattern {
+    /// Reads a format.
+    ///
+    /// # Errors
+    /// For directives that do not exist.
+    pub fn of(pattern: &str) -> Result<Self, Diagnostic> {
+        parse(pattern).map(Self)
+    }
+
+    /// The text of `items`; the format is repeated for the remaining items.
+    ///
+    /// # Errors
+    /// For items that do not fit the directives.
+    pub fn spelled(&self, items: &[FormatArgument]) -> Result<String, Diagnostic> {
+        let mut out = String::new();
+        let mut items = items.iter().peekable();
+        let takes = self.0.iter().any(|p| matches!(p, FormatPiece::Directive(_)));
+        loop {
+            for piece in &self.0 {
+                match piece {
+                    FormatPiece::Text(text) => out.push_str(text),
+                    FormatPiece::Directive(d) => match items.next() {
+                        Some(item) => d.spell(item, &mut out)?,
+                        // The format ends where its values are used up.
+                        None if !out.is_empty() => return Ok(out),
+                        None => {
+                            return Err(Diagnostic::error(
+                                "missing-argument",
+                                "the format needs a value that is not given",
+                            )
+                            .expected(format!("a value for %{}", d.letter)));
+                        }
+                    },
+                }
             }
-        }
-        if items.peek().is_none() {
-            return Ok(out);
-        }
-        if !takes {
-            return Err(Diagnostic::error("too-many-arguments", "the format takes no values")
-                .expected("a directive such as %g for each value"));
+            if items.peek().is_none() {
+                return Ok(out);
+            }
+            if !takes {
+                return Err(Diagnostic::error("too-many-arguments", "the format takes no values")
+                    .expected("a directive such as %g for each value"));
+            }
         }
     }
 }
 
+#[derive(Debug)]
 enum FormatPiece {
     Text(String),
     Directive(Directive),
 }
 
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
 struct Directive {
     left: bool,
     plus: bool,
@@ -129,7 +153,30 @@ fn parse(pattern: &str) -> Result<Vec<FormatPiece>, Diagnostic> {
 }
 
 impl Directive {
-    fn spell(self, item: &FormatArgument) -> Result<String, Diagnostic> {
+    fn is_plain(self) -> bool {
+        !(self.left || self.plus || self.blank || self.zero) && self.width == 0
+    }
+
+    fn spell(self, item: &FormatArgument, out: &mut String) -> Result<(), Diagnostic> {
+        // The commonest directives at once.
+        match (self.letter, item) {
+            ('s', FormatArgument::Text(text)) if self.is_plain() && self.precision.is_none() => {
+                out.push_str(text);
+                return Ok(());
+            }
+            ('d' | 'i', FormatArgument::Number(x))
+                if self.is_plain() && x.fract() == 0.0 && x.abs() <= 9e15 =>
+            {
+                let _ = write!(out, "{}", *x as i64);
+                return Ok(());
+            }
+            _ => {}
+        }
+        out.push_str(&self.spelled(item)?);
+        Ok(())
+    }
+
+    fn spelled(self, item: &FormatArgument) -> Result<String, Diagnostic> {
         let wrong = |expected: &str, found: String| {
             Diagnostic::error("wrong-format", format!("%{} takes {expected}", self.letter))
                 .expected(expected.to_string())
@@ -139,7 +186,7 @@ impl Directive {
         let body = match (self.letter, item) {
             ('s', FormatArgument::Text(text)) => match self.precision {
                 Some(p) => text.chars().take(p).collect(),
-                None => text.clone(),
+                None => text.to_string(),
             },
             ('s', FormatArgument::Number(x)) => moldloft_syntax::number::plain(*x),
             (_, FormatArgument::Text(text)) => {

@@ -229,6 +229,17 @@ fn beside<'v, T: Real>(op: BinaryOp, value: &'v Value<T>, other: &Value<T>) -> C
     }
 }
 
+/// Two texts as one; `None` for one that is too long.
+pub(crate) fn joined(a: &str, b: &str) -> Option<Arc<str>> {
+    if a.len() + b.len() > LONGEST_TEXT {
+        return None;
+    }
+    let mut text = String::with_capacity(a.len() + b.len());
+    text.push_str(a);
+    text.push_str(b);
+    Some(text.into())
+}
+
 /// The value of `a op b`.
 pub(crate) fn binary<T: Real>(
     op: BinaryOp,
@@ -240,14 +251,12 @@ pub(crate) fn binary<T: Real>(
         return outcome;
     }
     if let (BinaryOp::Add, Value::Text(a), Value::Text(b)) = (op, a, b) {
-        let length = a.len() + b.len();
-        if length > LONGEST_TEXT {
-            return Err(Diagnostic::error("too-many-elements", "the text is too long")
+        return joined(a, b).map(Value::Text).ok_or_else(|| {
+            Diagnostic::error("too-many-elements", "the text is too long")
                 .expected(format!("at most {LONGEST_TEXT} bytes"))
-                .found(format!("{length}"))
-                .help("write long texts to a file, piece by piece"));
-        }
-        return Ok(Value::text(&format!("{a}{b}")));
+                .found(format!("{}", a.len() + b.len()))
+                .help("write long texts to a file, piece by piece")
+        });
     }
     if let Some(value) = of_texts(op, a, b) {
         return value;

@@ -78,6 +78,10 @@ impl<T: Scalar> RegionCompiler<'_, T> {
                     }
                     this.emit(ScalarOp::Declare { variable, origin }).map(drop)
                 }
+                (Poisonable::Array(array), 0) if ty == Type::String => {
+                    sure = this.declared_text(id, (array, origin), item.value)?;
+                    Ok(())
+                }
                 (Poisonable::Array(array), 0) => {
                     let value = item.value.ok_or(Unfit::Statement)?;
                     let before = this.here()?;
@@ -130,6 +134,9 @@ impl<T: Scalar> RegionCompiler<'_, T> {
         op: AssignOp,
         value: ExprId,
     ) -> Result<(), Unfit> {
+        if self.assigned_text(id, target, op, value)? {
+            return Ok(());
+        }
         if self.is_whole(target) {
             return self.assigned_array(id, target, op, value);
         }

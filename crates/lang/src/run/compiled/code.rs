@@ -1,6 +1,7 @@
 //! Code of a region: operations on registers, and their source positions.
 
 use crate::functions::elementary::Elementary;
+use crate::functions::format::FormatPattern;
 use crate::source::module::{Module, Name, RoutineAt};
 use moldloft_diag::Span;
 use moldloft_elementwise::{Src, Tape};
@@ -22,7 +23,7 @@ pub(super) enum Relation {
 
 impl Relation {
     #[inline(always)]
-    pub fn holds(self, a: f64, b: f64) -> bool {
+    pub fn holds<V: PartialOrd>(self, a: V, b: V) -> bool {
         match self {
             Relation::Lt => a < b,
             Relation::Gt => a > b,
@@ -231,6 +232,34 @@ pub(super) enum ScalarOp {
         n: u16,
         origin: u16,
     },
+    ConstantText {
+        to: u16,
+        text: u16,
+    },
+    CopyText {
+        to: u16,
+        a: u16,
+    },
+    JoinTexts {
+        to: u16,
+        a: u16,
+        b: u16,
+    },
+    CompareTexts {
+        relation: Relation,
+        to: u16,
+        a: u16,
+        b: u16,
+    },
+    FormatText {
+        to: u16,
+        format: u16,
+    },
+    /// A text has got its first value.
+    DeclareText {
+        array: u16,
+        origin: u16,
+    },
     /// A variable of the file, read and written by a routine.
     LoadFile {
         to: u16,
@@ -360,12 +389,12 @@ pub(super) enum Captured {
     Nothing,
 }
 
-/// An array of numbers or vectors of a unit.
+/// An array of numbers or vectors of a unit, or a text.
 #[derive(Clone, Debug)]
 pub(super) struct CodeArray {
-    /// `None` for the sequence of a `foreach`.
+    /// `None` for the sequence of a `foreach`, and for a text until the end of its statement.
     pub name: Option<Name>,
-    /// An farray, a curve or a surface.
+    /// An farray, a curve, a surface or a string.
     pub ty: Type,
     pub captured: bool,
     pub declared: bool,
@@ -404,6 +433,14 @@ pub(super) enum CodeArgument {
     },
     /// A variable of the file, by reference: the routine's code knows it.
     OfFile,
+}
+
+/// A call of `format`: its pattern, if that is a literal, or the register of it.
+#[derive(Debug)]
+pub(super) struct CodeFormat {
+    pub literal: Option<FormatPattern>,
+    pub pattern: u16,
+    pub args: Box<[CodeArgument]>,
 }
 
 /// Source of a fault at a position of the code.
@@ -500,6 +537,8 @@ pub(super) struct CodeUnit<T: Real> {
     /// Registers at the start of a call: constants.
     pub template: Vec<T>,
     pub sites: Vec<CodeSite>,
+    pub texts: Vec<Arc<str>>,
+    pub formats: Vec<CodeFormat>,
     pub kernels: Vec<ArrayKernel<T>>,
     pub notes: Vec<(u16, CodeNote)>,
     pub ranges: Vec<CodeRange>,
@@ -533,6 +572,8 @@ impl<T: Real> CodeUnit<T> {
             references: Vec::new(),
             template: Vec::new(),
             sites: Vec::new(),
+            texts: Vec::new(),
+            formats: Vec::new(),
             kernels: Vec::new(),
             notes: Vec::new(),
             ranges: Vec::new(),

@@ -5,8 +5,8 @@
 //! again.
 
 use super::code::{
-    ActiveLoop, Captured, CodeNote, CodeRange, CodeRegion, CodeSite, CodeUnit, Generation,
-    NO_LABEL, NamePlace, Poisonable, RegionStart, Relation, ScalarOp,
+    ActiveLoop, Captured, CodeArray, CodeNote, CodeRange, CodeRegion, CodeSite, CodeUnit,
+    Generation, NO_LABEL, NamePlace, Poisonable, RegionStart, Relation, ScalarOp,
 };
 use super::names::{Meaning, ids};
 use super::registers::{UNDECLARED, declared_by};
@@ -56,6 +56,8 @@ pub(super) struct UnitProgress<T> {
     taken: Vec<u16>,
     free_vectors: Vec<u16>,
     taken_vectors: Vec<u16>,
+    free_texts: Vec<u16>,
+    taken_texts: Vec<u16>,
     registers: u16,
     compiled: usize,
     left: usize,
@@ -286,7 +288,7 @@ impl<T: Scalar> RegionCompiler<'_, T> {
                 Type::Int | Type::Float | Type::Vector => {
                     self.new_variable(unit, name, Some(ty), None, false)
                 }
-                Type::Farray | Type::Curve | Type::Surface => {
+                Type::Farray | Type::Curve | Type::Surface | Type::String => {
                     self.new_array(unit, Some(name), ty, false, false)
                 }
                 _ => return Err(Unfit::Unit),
@@ -390,6 +392,24 @@ impl<T: Scalar> RegionCompiler<'_, T> {
         first
     }
 
+    /// A text until the end of the statement.
+    pub fn scratch_text(&mut self) -> u16 {
+        let unit = self.unit;
+        let array = match self.progress[unit].free_texts.pop() {
+            Some(array) => array,
+            None => {
+                let array = self.units[unit].arrays.len() as u16;
+                let text =
+                    CodeArray { name: None, ty: Type::String, captured: false, declared: true };
+                self.units[unit].arrays.push(text);
+                self.set_known(Poisonable::Array(array), true, true);
+                array
+            }
+        };
+        self.progress[unit].taken_texts.push(array);
+        array
+    }
+
     pub fn constant(&mut self, x: T) -> u16 {
         let known = self.progress[self.unit].constants.iter().find(|(y, _)| y.bits_eq(x));
         if let Some((_, register)) = known {
@@ -474,6 +494,8 @@ impl<T: Scalar> RegionCompiler<'_, T> {
         done.free.extend(taken);
         let taken = std::mem::take(&mut done.taken_vectors);
         done.free_vectors.extend(taken);
+        let taken = std::mem::take(&mut done.taken_texts);
+        done.free_texts.extend(taken);
         match outcome {
             Err(Unfit::Statement) => {
                 let code = &mut self.units[unit];
@@ -893,6 +915,11 @@ impl<T: Scalar> RegionCompiler<'_, T> {
             }
             ExprKind::Binary { op, left, right } if relation(op).is_some() => {
                 let relation = relation(op).expect("asked before");
+                if self.is_text(left) || self.is_text(right) {
+                    let a = self.value(stmt, id, None)?;
+                    jumps.push(self.emit(ScalarOp::JumpUnless { a, to: 0 })?);
+                    return Ok(());
+                }
                 let (a, b) = self.both(stmt, left, right)?;
                 jumps.push(self.emit(ScalarOp::JumpIfNot { relation, a, b, to: 0 })?);
                 Ok(())

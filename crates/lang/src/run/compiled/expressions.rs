@@ -65,6 +65,14 @@ impl<T: Scalar> RegionCompiler<'_, T> {
             ExprKind::Binary { op: BinaryOp::Dot, left, right } => {
                 self.dot_product(stmt, left, right)?
             }
+            ExprKind::Binary { op, left, right }
+                if relation(op).is_some() && (self.is_text(left) || self.is_text(right)) =>
+            {
+                let to = self.result(want);
+                let relation = relation(op).expect("a comparison");
+                self.compared_texts(stmt, relation, left, right, to)?;
+                to
+            }
             ExprKind::Binary { op, left, right } => {
                 let (a, b) = self.both(stmt, left, right)?;
                 let to = self.result(want);
@@ -264,6 +272,9 @@ impl<T: Scalar> RegionCompiler<'_, T> {
             }
             _ => return Err(Unfit::Statement),
         };
+        if array.1 == Type::String {
+            return Err(Unfit::Statement);
+        }
         self.live(what, CodeNote::Name(symbol, m.program[id].span))?;
         Ok(array)
     }
@@ -486,6 +497,12 @@ impl<T: Scalar> RegionCompiler<'_, T> {
                         from = to;
                     }
                     CodeArgument::Number { from }
+                }
+                Type::String => {
+                    if !self.is_text(arg) || given[k + 1..].iter().any(|&next| self.calls(next)) {
+                        return Err(Unfit::Statement);
+                    }
+                    CodeArgument::Array { from: self.text(stmt, arg, None)? }
                 }
                 _ => {
                     // An array that a later argument may change would have to be copied now.

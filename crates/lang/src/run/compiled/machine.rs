@@ -7,6 +7,7 @@ use super::registers::{
     ArrayItems, ArrayRegister, RegisterMachine, UNDECLARED, WaitingCall, declaration, declared_by,
     is_live,
 };
+use super::texts::formatted;
 use crate::array::lanes::not_finite;
 use crate::functions::elementary::{Elementary, small_remainder};
 use crate::run::interpreter::{Flow, Interpreter, MOST_CALLS, silent};
@@ -190,6 +191,15 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                 }
             }};
         }
+        macro_rules! text {
+            ($a:expr) => {{
+                let a = $a;
+                match a & OF_FILE {
+                    0 => arrays[a as usize].text(),
+                    _ => arrays_of_file[(a & !OF_FILE) as usize].text(),
+                }
+            }};
+        }
         macro_rules! three {
             ($r:expr) => {
                 own[$r as usize..$r as usize + 3]
@@ -234,6 +244,18 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                 now += 1;
             }};
         }
+        // The first statement of a turn.
+        macro_rules! first_statement {
+            () => {
+                if let ScalarOp::Step(statement) = ops[pc]
+                    && now + 1 < look_at
+                {
+                    executed[statement as usize] = true;
+                    now += 1;
+                    pc += 1;
+                }
+            };
+        }
         macro_rules! for_test {
             ($at:expr, $variable:expr, $register:expr, $origin:expr, $exit:expr, $kept:expr) => {{
                 let at = $at;
@@ -249,14 +271,29 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                         at!(at + 4) = x;
                         at!(at + 5) = T::from(turned as f64);
                     }
-                    // The first statement of the turn.
-                    if let ScalarOp::Step(statement) = ops[pc]
-                        && now + 1 < look_at
-                    {
-                        executed[statement as usize] = true;
-                        now += 1;
-                        pc += 1;
+                    first_statement!();
+                } else {
+                    pc = $exit as usize;
+                }
+            }};
+        }
+        macro_rules! walk_test {
+            ($at:expr, $array:expr, $variable:expr, $origin:expr, $exit:expr) => {{
+                let at = $at;
+                let k = at!(at).re();
+                if k < at!(at + 1).re() {
+                    let (walked, k) = (&arrays[$array as usize], k as usize);
+                    let register = code.variables[$variable as usize].register;
+                    match code.arrays[$array as usize].ty {
+                        Type::Farray => at!(register) = walked.read()[k],
+                        _ => three!(register).copy_from_slice(&walked.vector(k)),
                     }
+                    marks[$variable as usize] = declared_by($origin);
+                    step!();
+                    turned += 1;
+                    at!(at + 2) = T::from((k + 1) as f64);
+                    at!(at + 3) = T::from(turned as f64);
+                    first_statement!();
                 } else {
                     pc = $exit as usize;
                 }
@@ -444,6 +481,31 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                         mark: declared_by(origin),
                     };
                 }
+                ScalarOp::ConstantText { to, text } => {
+                    array!(to).items = ArrayItems::Text(code.texts[text as usize].clone());
+                }
+                ScalarOp::CopyText { to, a } => {
+                    let text = text!(a).clone();
+                    array!(to).items = ArrayItems::Text(text);
+                }
+                ScalarOp::JoinTexts { to, a, b } => {
+                    let Some(joined) = ops::joined(text!(a), text!(b)) else { fault!() };
+                    array!(to).items = ArrayItems::Text(joined);
+                }
+                ScalarOp::CompareTexts { relation, to, a, b } => {
+                    let holds = relation.holds(text!(a), text!(b));
+                    at!(to) = T::from(f64::from(u8::from(holds)));
+                }
+                ScalarOp::FormatText { to, format } => {
+                    let format = &code.formats[format as usize];
+                    let Some(text) = formatted(format, own, arrays, arrays_of_file) else {
+                        fault!()
+                    };
+                    array!(to).items = ArrayItems::Text(text);
+                }
+                ScalarOp::DeclareText { array, origin } => {
+                    array!(array).mark = declared_by(origin);
+                }
                 ScalarOp::LoadFile { to, of_file } => at!(to) = file[of_file as usize],
                 ScalarOp::StoreFile { of_file, a } => file[of_file as usize] = at!(a),
                 ScalarOp::WholeFile { of_file, a } => {
@@ -494,26 +556,16 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                     arrays[array as usize] = walked;
                 }
                 ScalarOp::WalkTest { at, array, variable, origin, exit } => {
-                    let k = at!(at).re();
-                    if k < at!(at + 1).re() {
-                        let (walked, k) = (&arrays[array as usize], k as usize);
-                        let register = code.variables[variable as usize].register;
-                        match code.arrays[array as usize].ty {
-                            Type::Farray => at!(register) = walked.read()[k],
-                            _ => three!(register).copy_from_slice(&walked.vector(k)),
-                        }
-                        marks[variable as usize] = declared_by(origin);
-                        step!();
-                        turned += 1;
-                        at!(at + 2) = T::from((k + 1) as f64);
-                        at!(at + 3) = T::from(turned as f64);
-                    } else {
-                        pc = exit as usize;
-                    }
+                    walk_test!(at, array, variable, origin, exit);
                 }
                 ScalarOp::WalkNext { at, test } => {
                     at!(at) = T::from(at!(at).re() + 1.0);
-                    pc = test as usize;
+                    pc = test as usize + 1;
+                    if let ScalarOp::WalkTest { at, array, variable, origin, exit } =
+                        ops[test as usize]
+                    {
+                        walk_test!(at, array, variable, origin, exit);
+                    }
                 }
                 ScalarOp::WalkEnd { array } => {
                     arrays[array as usize] = ArrayRegister::nothing(UNDECLARED);

@@ -24,6 +24,7 @@ mod machine;
 mod names;
 mod passes;
 mod registers;
+mod texts;
 mod vectors;
 mod walks;
 

@@ -39,7 +39,9 @@ pub(super) fn declared(
                         (_, 1) if ty.0 == Type::Surface => Declares::Other,
                         _ if item.list.is_some() => Declares::Other,
                         (Type::Int | Type::Float | Type::Vector, 0) => Declares::Variable(ty.0),
-                        (Type::Farray | Type::Curve | Type::Surface, _) => Declares::Array(ty.0),
+                        (Type::Farray | Type::Curve | Type::Surface, _) | (Type::String, 0) => {
+                            Declares::Array(ty.0)
+                        }
                         _ => Declares::Other,
                     };
                     f(name(item.name.symbol), how, global);
@@ -134,7 +136,8 @@ pub(super) fn held<T: Scalar>(scope: &Scope<T>, bound: &ScopedBinding<T>) -> Opt
             (Type::Int | Type::Float, Value::Number(_)) | (Type::Vector, Value::Vector(_)) => {
                 Some(Captured::Variable(*ty))
             }
-            (Type::Farray, Value::Numbers(_) | Value::Unset)
+            (Type::String, Value::Text(_))
+            | (Type::Farray, Value::Numbers(_) | Value::Unset)
             | (Type::Curve | Type::Surface, Value::Vectors(_) | Value::Unset) => {
                 Some(Captured::Array(*ty))
             }
@@ -266,7 +269,9 @@ impl<T: Scalar> RegionCompiler<'_, T> {
                 }
             }
         };
-        array.map_or(Declares::Other, |ty| Declares::Variable(element_type(ty)))
+        array
+            .filter(|ty| *ty != Type::String)
+            .map_or(Declares::Other, |ty| Declares::Variable(element_type(ty)))
     }
 
     /// Excludes a formal argument that is declared again in its routine, since its type may change.

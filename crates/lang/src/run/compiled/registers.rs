@@ -22,9 +22,10 @@ pub(super) enum ArrayItems<T> {
     /// All x, all y, all z of vectors.
     OwnedVectors([Vec<T>; 3]),
     SharedVectors(Arc<Vectors<T>>),
+    Text(Arc<str>),
 }
 
-/// An array of numbers or vectors in code.
+/// An array of numbers or vectors in code, or a text.
 #[derive(Debug)]
 pub(super) struct ArrayRegister<T> {
     pub items: ArrayItems<T>,
@@ -72,6 +73,15 @@ impl<T: Real> ArrayRegister<T> {
             ArrayItems::Owned(items) => items,
             ArrayItems::Shared(array) => &array.items,
             _ => &[],
+        }
+    }
+
+    /// The text.
+    #[inline(always)]
+    pub fn text(&self) -> &Arc<str> {
+        match &self.items {
+            ArrayItems::Text(text) => text,
+            _ => unreachable!("a string holds a text"),
         }
     }
 
@@ -146,6 +156,7 @@ impl<T: Real> ArrayRegister<T> {
                     Err(array) => ArrayItems::SharedVectors(array),
                 };
             }
+            Value::Text(text) => self.items = ArrayItems::Text(text),
             other => {
                 *value = other;
                 (self.items, self.shape) = (ArrayItems::Nothing, ArrayShape::Row(0));
@@ -164,6 +175,7 @@ impl<T: Real> ArrayRegister<T> {
                 Value::Vectors(Arc::new(Vectors { shape: self.shape, planes }))
             }
             ArrayItems::SharedVectors(array) => Value::Vectors(array),
+            ArrayItems::Text(text) => Value::Text(text),
             ArrayItems::Nothing => Value::Unset,
         };
         (value, std::mem::take(&mut self.known))
@@ -182,6 +194,7 @@ impl<T: Real> ArrayRegister<T> {
         let items = match &self.items {
             ArrayItems::Shared(array) => ArrayItems::Shared(array.clone()),
             ArrayItems::SharedVectors(array) => ArrayItems::SharedVectors(array.clone()),
+            ArrayItems::Text(text) => ArrayItems::Text(text.clone()),
             _ => ArrayItems::Nothing,
         };
         Self { items, shape: self.shape, known: Known::default(), mark }

@@ -106,6 +106,7 @@ impl<T: Scalar> RegionCompiler<'_, T> {
             Meaning::OfFile(Poisonable::Array(k)) => Some(self.units[0].arrays[k as usize].ty),
             _ => None,
         }
+        .filter(|ty| *ty != Type::String)
     }
 
     /// The value of an expression, a number or a vector.
