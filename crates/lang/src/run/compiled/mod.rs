@@ -1,10 +1,10 @@
-//! Compiled code for loops and routines on numbers and arrays: a sequence of operations on registers.
+//! Compiled code for loops and routines on numbers, arrays and texts: a sequence of operations on registers.
 //!
 //! `loop or routine -> code -> registers`
 //!
 //! A loop, or the body of a routine, is compiled when it is met, together with the routines that it
 //! calls. Names become registers, element-wise statements on whole arrays passes over the elements; a
-//! statement that is neither (texts, lists, objects, files) is one operation of the code: the variables are handed to the interpreter, it executes
+//! statement that is neither (lists, objects, files) is one operation of the code: the variables are handed to the interpreter, it executes
 //! the statement, and they are taken back. The same happens for most faults, so that the
 //! interpreter reports them. Code counts steps as the interpreter does, and checks its limits and
 //! cancellation every few hundred steps.
