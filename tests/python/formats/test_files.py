@@ -17,7 +17,7 @@ import trimesh
 
 import moldloft
 from conftest import SAILBOAT
-from moldloft.files import FORMATS, Output, commit
+from moldloft.exchange.files import FORMATS, Output, commit
 
 BOX = """
 param float height = 1 in [0.5, 2];

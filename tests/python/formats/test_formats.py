@@ -9,8 +9,9 @@ from pathlib import Path
 import pytest
 
 import moldloft
-from moldloft import files, formats
+from moldloft import formats
 from moldloft.cli import main
+from moldloft.exchange import files
 
 ROOT = Path(__file__).resolve().parents[3]
 PACKAGE = ROOT / "python" / "moldloft"

@@ -181,8 +181,9 @@ def readers(world: World) -> dict[str, Reader]:
     import numpy as np
 
     import moldloft
-    from moldloft import _core, grids, offsets, overlays, permissions, stability, storage
+    from moldloft import _core, grids, offsets, overlays, permissions, storage
     from moldloft.fairing import files as tables
+    from moldloft.hydro import stability
     from moldloft.storage import journal, locks, sets
 
     def model() -> moldloft.Model:
@@ -360,7 +361,8 @@ def callables(world: World) -> list[tuple[str, str, Callable[[], Any]]]:
     import numpy as np
 
     import moldloft
-    from moldloft import fairing, functions, grids, implicit, kinds, offsets, overlays, stability
+    from moldloft import fairing, functions, grids, implicit, kinds, offsets, overlays
+    from moldloft.hydro import stability
 
     text = (ROOT / "examples" / "sailboat" / "hull.sdl").read_text()
     t = np.linspace(0, 1, 9)

@@ -8,8 +8,8 @@ import re
 import pytest
 
 import moldloft
-from moldloft.booklet import booklet, write_booklet
-from moldloft.stability import Wind
+from moldloft.hydro.booklet import booklet, write_booklet
+from moldloft.hydro.stability import Wind
 from test_stability import SHIP
 
 

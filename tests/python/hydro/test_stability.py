@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import moldloft
-from moldloft.stability import Wind
+from moldloft.hydro.stability import Wind
 from moldloft.starter import BOX
 from moldloft.units import Units
 
@@ -225,7 +225,7 @@ def test_criteria_of_a_file(tmp_path):
 
 
 def test_cross_curves_of_the_box():
-    from moldloft.stability import cross_curves
+    from moldloft.hydro.stability import cross_curves
 
     ship = moldloft.loads(SHIP)
     found = cross_curves(ship, [2520.0], [math.radians(10), math.radians(30)], free_trim=False)

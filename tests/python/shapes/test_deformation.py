@@ -13,7 +13,7 @@ from scipy.interpolate import BSpline
 import moldloft
 from moldloft import study
 from moldloft.deformation import Box, Deformation, Variable, _basis
-from moldloft.mesh_files import mesh_of_file
+from moldloft.exchange.mesh_files import mesh_of_file
 
 ROOT = Path(__file__).parents[3]
 SOAK = os.environ.get("MOLDLOFT_SOAK") == "1"

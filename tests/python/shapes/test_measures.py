@@ -129,7 +129,7 @@ def test_angles_of_openings(hull):
     )
     angle, name = stability.flooding()
     assert name == "hatch" and math.degrees(angle) == pytest.approx(85.28844, abs=1e-4)
-    central = moldloft.stability.Opening("middle", (20, 1, 3))
+    central = moldloft.hydro.stability.Opening("middle", (20, 1, 3))
     assert stability.immersed(central, math.radians(120)) is None
 
 

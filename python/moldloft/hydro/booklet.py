@@ -19,8 +19,8 @@ from moldloft.errors import Error
 from moldloft.units import header
 
 if TYPE_CHECKING:
+    from moldloft.hydro.stability import Stability, Wind
     from moldloft.models import Model
-    from moldloft.stability import Stability, Wind
 
 __all__ = ["booklet", "write_booklet"]
 
@@ -86,7 +86,7 @@ def booklet(
     stability
         The loading, of :meth:`moldloft.Model.stability`.
     rule, wind
-        The criteria, as for :meth:`moldloft.stability.Stability.assess`.
+        The criteria, as for :meth:`moldloft.hydro.stability.Stability.assess`.
     drafts
         Drafts of the hydrostatic table; default: eight about the draft of the loading.
     heels
@@ -110,7 +110,7 @@ def _parts(
     heels: Sequence[float],
 ) -> list[_Part]:
     """Contents of the booklet of a loading."""
-    from moldloft.stability import cross_curves
+    from moldloft.hydro.stability import cross_curves
 
     row = stability.upright
     units = model.units.complete() if model.units.length else model.units
@@ -192,7 +192,7 @@ def write_booklet(
     Error
         If the ending is another one, or reportlab is not installed.
     """
-    from moldloft.files import Output, commit
+    from moldloft.exchange.files import Output, commit
 
     path = Path(path)
     ending = path.suffix.lower()

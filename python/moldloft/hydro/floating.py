@@ -8,23 +8,23 @@ from typing import TYPE_CHECKING, Any, cast
 
 from moldloft.arguments import explain, names_of
 from moldloft.errors import Error
-from moldloft.hydrostatics import (
+from moldloft.hydro.hydrostatics import (
     Hydrostatics,
     HydrostaticTable,
     RightingCurve,
     faceted,
     triangles_off,
 )
+from moldloft.hydro.weights import Weight, WeightTable
 from moldloft.units import Units
-from moldloft.weights import Weight, WeightTable
 
 if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
     from moldloft import _core
+    from moldloft.hydro.stability import Stability
     from moldloft.models import Model
-    from moldloft.stability import Stability
 
 __all__ = ["Floating"]
 
@@ -532,7 +532,7 @@ class Floating:
         >>> round(math.degrees(s.vanishing()), 2), s.stable
         (80.21, True)
         """
-        from moldloft.stability import Opening, Stability
+        from moldloft.hydro.stability import Opening, Stability
 
         if displacement is None or cg is None:
             total = self.weights()

@@ -9,8 +9,8 @@ import numpy as np
 
 from moldloft import _core
 from moldloft.arguments import explain
-from moldloft.calculus import CurveCalculus, SurfaceCalculus, broadcast, parameter
 from moldloft.errors import Error, ModelError, UnknownNameError
+from moldloft.shapes.calculus import CurveCalculus, SurfaceCalculus, broadcast, parameter
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -18,8 +18,8 @@ if TYPE_CHECKING:
     from moldloft._core import Document
     from moldloft.fairing.look import Look
     from moldloft.models import Model
-    from moldloft.nurbs import Nurbs
-    from moldloft.searches import Intersection, NearestPoints
+    from moldloft.shapes.nurbs import Nurbs
+    from moldloft.shapes.searches import Intersection, NearestPoints
 
     Floats = NDArray[np.float64]
 
@@ -321,7 +321,7 @@ class _Located(Object):
         >>> near.statuses.tolist()
         ['ok', 'edge-clamped']
         """
-        from moldloft.searches import nearest
+        from moldloft.shapes.searches import nearest
 
         return nearest(self, points)
 
@@ -362,7 +362,7 @@ class _Located(Object):
         >>> m["up"].intersect(([0, 1.5, 0], [0, 1, 0])).points
         array([[2. , 1.5, 1. ]])
         """
-        from moldloft.searches import intersect
+        from moldloft.shapes.searches import intersect
 
         return intersect(self, other)
 
@@ -399,7 +399,7 @@ class _Located(Object):
         <Nurbs: curve of degree 3, 4 control points, exact>
         """
         from moldloft import _core
-        from moldloft.nurbs import Nurbs
+        from moldloft.shapes.nurbs import Nurbs
 
         return Nurbs._of(_core.nurbs(self._document, self.name, accuracy, degree))
 
@@ -597,7 +597,7 @@ class Solid(Object):
             If no NURBS reaches the accuracy, with the bound reached and its position.
         """
         from moldloft import _core
-        from moldloft.nurbs import Nurbs
+        from moldloft.shapes.nurbs import Nurbs
 
         return Nurbs._of(_core.nurbs(self._document, self.name, accuracy, degree))
 

@@ -58,7 +58,7 @@ def file_name(stem: str, format: str) -> str:
     stem
         Name of the file without its ending.
     format
-        The name of a format, see :data:`moldloft.files.FORMATS`.
+        The name of a format, see :data:`moldloft.exchange.files.FORMATS`.
 
     Examples
     --------
@@ -112,7 +112,7 @@ def produce(
     model
         The model.
     format
-        The name of a format, see :data:`moldloft.files.FORMATS`.
+        The name of a format, see :data:`moldloft.exchange.files.FORMATS`.
     path
         Gives the names of the files; nothing is written.
     lids

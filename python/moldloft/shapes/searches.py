@@ -14,7 +14,7 @@ from moldloft.errors import ModelError
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
-    from moldloft.objects import Object
+    from moldloft.shapes.objects import Object
 
     Floats = NDArray[np.float64]
 
@@ -152,7 +152,7 @@ def _plane(plane: object) -> tuple[list[float], list[float]]:
 
 def intersect(target: Object, other: object) -> Intersection:
     """Implements :meth:`moldloft.Object.intersect`."""
-    from moldloft.objects import Object
+    from moldloft.shapes.objects import Object
 
     found: dict[str, Any]
     if isinstance(other, Object):

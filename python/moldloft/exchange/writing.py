@@ -49,8 +49,8 @@ class Writable:
         path
             The file, in a folder that exists.
         format
-            One of :data:`moldloft.files.FORMATS`, such as ``gdf``, ``nemoh``, ``stl``, ``glb``,
-            ``vts``, ``svg`` or ``sdl``; by default what the file's name ends in.
+            One of :data:`moldloft.exchange.files.FORMATS`, such as ``gdf``, ``nemoh``, ``stl``,
+            ``glb``, ``vts``, ``svg`` or ``sdl``; by default what the file's name ends in.
         lids
             For panel codes: write lids too. HAMS has them in a file of their own.
         immersed
@@ -100,7 +100,7 @@ class Writable:
         ...     [path.name for path in m.write(pathlib.Path(folder) / "plate.stl")]
         ['plate.stl']
         """
-        from moldloft.files import commit, ending, produce
+        from moldloft.exchange.files import commit, ending, produce
 
         path = Path(path)
         if not path.parent.is_dir():
@@ -136,13 +136,13 @@ class Writable:
     ) -> dict[str, bytes]:
         """The files of a format by name, without writing them; the first is called ``name``.
 
-        For the formats of the Rust table; :func:`moldloft.files.produce` takes all. Arguments as
-        for :meth:`write`.
+        For the formats of the Rust table; :func:`moldloft.exchange.files.produce` takes all.
+        Arguments as for :meth:`write`.
 
         Parameters
         ----------
         format
-            The name of a format, see :data:`moldloft.files.FORMATS`.
+            The name of a format, see :data:`moldloft.exchange.files.FORMATS`.
         name
             The name of the main file.
         lids

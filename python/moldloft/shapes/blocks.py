@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from moldloft import _core
-    from moldloft.files import Output
+    from moldloft.exchange.files import Output
 
 __all__ = ["FORMATS", "Block", "Blocks", "Boundary", "Interface"]
 
@@ -207,8 +207,8 @@ class Blocks:
         path
             The file.
         format
-            One of :data:`moldloft.blocks.FORMATS`; by default what the file's name ends in, and
-            ``blockmesh`` for a file ``blockMeshDict``.
+            One of :data:`moldloft.shapes.blocks.FORMATS`; by default what the file's name ends in,
+            and ``blockmesh`` for a file ``blockMeshDict``.
 
         Returns
         -------
@@ -222,7 +222,7 @@ class Blocks:
         FormatError
             If the format is unknown or cannot represent the blocks.
         """
-        from moldloft.files import commit
+        from moldloft.exchange.files import commit
 
         path = Path(path)
         ending = "blockmesh" if path.name.endswith("blockMeshDict") else path.suffix.lstrip(".")
@@ -234,7 +234,7 @@ class Blocks:
         Parameters
         ----------
         format
-            The name of a format, see :data:`moldloft.files.FORMATS`.
+            The name of a format, see :data:`moldloft.exchange.files.FORMATS`.
         path
             Gives the names of the files; nothing is written.
 
@@ -248,7 +248,7 @@ class Blocks:
         FormatError
             If the format is unknown or cannot represent the blocks.
         """
-        from moldloft.files import Output
+        from moldloft.exchange.files import Output
 
         row = _ROWS.get(format)
         if row is None:

@@ -12,7 +12,7 @@ from moldloft.errors import Error, UnknownNameError
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from moldloft.hydrostatics import Hydrostatics
+    from moldloft.hydro.hydrostatics import Hydrostatics
 
 __all__ = ["kh_files", "stiffness"]
 

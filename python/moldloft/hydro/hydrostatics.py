@@ -384,7 +384,7 @@ class Hydrostatics:
         >>> bool(abs(k[2, 2] - state.waterplane_area) < 1e-9)
         True
         """
-        from moldloft.stiffness import stiffness
+        from moldloft.hydro.stiffness import stiffness
 
         return stiffness(self, cg, mass=mass, about=about, by=by)
 
@@ -412,8 +412,8 @@ class Hydrostatics:
         FileError
             If there is no such folder, or it cannot be written to.
         """
-        from moldloft.files import Output, commit
-        from moldloft.stiffness import kh_files
+        from moldloft.exchange.files import Output, commit
+        from moldloft.hydro.stiffness import kh_files
 
         files = kh_files(self, cg, mass)
         return commit(Path(folder), [Output(*pair) for pair in files.items()], make=False)
@@ -624,7 +624,7 @@ class _Rows:
         FileError
             If there is no such folder, or it cannot be written to.
         """
-        from moldloft.files import Output, commit
+        from moldloft.exchange.files import Output, commit
 
         path = Path(path)
         return commit(path.parent, [Output(path.name, self.csv().encode())], make=False)[0]
@@ -813,7 +813,7 @@ def _axes(columns: int) -> tuple[Any, list[Any]]:
 
 
 def _save(figure: Any, path: str | os.PathLike[str]) -> Path:
-    from moldloft.files import Output, commit
+    from moldloft.exchange.files import Output, commit
 
     path = Path(path)
     kind = path.suffix.lstrip(".").lower()

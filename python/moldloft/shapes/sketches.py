@@ -13,7 +13,7 @@ import numpy as np
 from moldloft import _core
 from moldloft.arguments import explain
 from moldloft.errors import Error, FileError, UnknownNameError
-from moldloft.sketch_values import (
+from moldloft.shapes.sketch_values import (
     DimensionMark,
     Gradient,
     ObjectChange,
@@ -96,7 +96,7 @@ class Sketch:
     >>> s.run("SET H 9")
     Traceback (most recent call last):
       ...
-    moldloft.sketches.SketchError: error: H = 9 is outside its range, 1 to 5
+    moldloft.shapes.sketches.SketchError: error: H = 9 is outside its range, 1 to 5
       next: give a number in it, or another range: SET H 9 IN lo hi
     """
 
@@ -197,7 +197,7 @@ class Sketch:
         FileError
             If there is no such folder, or it cannot be written to.
         """
-        from moldloft.files import Output, commit
+        from moldloft.exchange.files import Output, commit
 
         path = Path(path)
         reply = self.run(f'SAVE AS "{path.name}"')[-1]
@@ -232,7 +232,7 @@ class Sketch:
         FileError
             If there is no such folder, or it cannot be written to.
         """
-        from moldloft.files import Output, commit
+        from moldloft.exchange.files import Output, commit
 
         path = Path(path)
         wanted = (format or path.suffix.lstrip(".")).lower()

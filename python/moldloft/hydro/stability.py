@@ -1,7 +1,7 @@
 """Stability of a loading: righting arms with exact areas, special angles, and criteria of rules.
 
 >>> import math
->>> from moldloft.stability import Opening
+>>> from moldloft.hydro.stability import Opening
 >>> Opening("vent", (1.0, 2.0, 3.0)).height(0.0, 0.0, 0.5)
 2.5
 """
@@ -27,7 +27,7 @@ from moldloft.storage import read_text
 from moldloft.units import Units
 
 if TYPE_CHECKING:
-    from moldloft.hydrostatics import Hydrostatics
+    from moldloft.hydro.hydrostatics import Hydrostatics
     from moldloft.models import Model
 
 __all__ = [
@@ -554,7 +554,7 @@ class CrossCurves:
         path
             The file.
         """
-        from moldloft.files import Output, commit
+        from moldloft.exchange.files import Output, commit
 
         path = Path(path)
         return commit(path.parent, [Output(path.name, self.csv().encode())], make=False)[0]
@@ -569,7 +569,7 @@ class CrossCurves:
         path
             The file.
         """
-        from moldloft.hydrostatics import plot_curves
+        from moldloft.hydro.hydrostatics import plot_curves
 
         volume, arm = self.units.of("volume"), self.units.of("kn")
         curves = {
@@ -751,7 +751,7 @@ def _short(value: float | None) -> str:
 @cache
 def _built_in() -> dict[str, Any]:
     data: dict[str, Any] = json.loads(
-        files("moldloft").joinpath("criteria.json").read_text(encoding="utf-8")
+        files("moldloft.hydro").joinpath("criteria.json").read_text(encoding="utf-8")
     )
     return data
 
