@@ -90,7 +90,7 @@ engine: ## the engine for `export --html`; needs the target wasm32-unknown-unkno
 	@$(PYTHON) tools/pack_engine.py $${CARGO_TARGET_DIR:-target}/$(WASM)/$(ENGINE_PROFILE)/moldloft_engine.wasm $(ENGINE)
 
 living: $(VENV)/.with-tests $(VENV)/.with-browser ## the tests of the engine for pages and of pages with it
-	@$(BIN)/python -m pytest tests/python/test_engine_in_page.py tests/python/test_workbench_page.py tests/python/test_vscode_page.py
+	@$(BIN)/python -m pytest tests/python/workbench/test_engine_in_page.py tests/python/workbench/test_workbench_page.py tests/python/workbench/test_vscode_page.py
 
 # What the tests of the page need, where it can be had: a browser that runs without a display.
 $(VENV)/.with-browser:
@@ -111,13 +111,14 @@ optimised: ## rebuilds the package in .venv as users get it, for benchmarks
 	@$(MAKE) --no-print-directory PROFILE=release $(VENV)/.installed
 
 # 339 tests of each part of the package, 100 s of processor time: without browsers, builds, solvers and random campaigns.
-QUICK := api contours docstrings errors formats model_files offsets panels parts searches types usage_mistakes
+QUICK := shapes/test_api.py shapes/test_contours.py house/test_docstrings.py language/test_errors.py formats/test_formats.py language/test_model_files.py \
+	hydro/test_offsets.py shapes/test_panels.py shapes/test_parts.py shapes/test_searches.py house/test_types.py language/test_usage_mistakes.py
 
 quick: $(VENV)/.with-tests ## format, lints and some tests, two minutes; CRATE=name adds the tests of a crate
 	@cargo fmt --all --check
 	@$(BIN)/ruff check --quiet
 	@$(BIN)/ruff format --quiet --check
-	@$(BIN)/python -m pytest --quiet --numprocesses auto $(QUICK:%=tests/python/test_%.py)
+	@$(BIN)/python -m pytest --quiet --numprocesses auto $(QUICK:%=tests/python/%)
 	@$(if $(CRATE),cargo test --quiet -p moldloft-$(CRATE))
 
 test: setup check ## every check and test

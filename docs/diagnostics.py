@@ -28,7 +28,7 @@ printed message. Ids are stable, wording may improve. `moldloft doc wrong-class`
 `moldloft check --json` prints messages as data.
 
 An error blocks only objects that depend on it; warnings and notes do not change results. The programs are run by
-`tests/python/test_diagnostics_page.py`.
+`tests/python/house/test_diagnostics_page.py`.
 """
 
 #: Diagnostics without a program: they need an interrupt, an internal error, a rare failure of an iteration, derivatives, or the workbench.

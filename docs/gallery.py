@@ -15,7 +15,7 @@ PICTURES = ROOT / "docs" / "images" / "gallery"
 HEAD = """# Gallery
 
 Models to start from, each one file of fewer than 150 lines with parameters and their ranges. Tests check their figures against closed
-forms or another calculation (`tests/python/test_gallery.py`); `docs/gallery.py` generates this page.
+forms or another calculation (`tests/python/shapes/test_gallery.py`); `docs/gallery.py` generates this page.
 
 ```
 moldloft view examples/gallery/catamaran.sdl

@@ -43,7 +43,7 @@ except ImportError:
 import moldloft
 from moldloft import grids, offsets, overlays
 from moldloft.fairing import files as tables
-from moldloft.sketches import Sketch
+from moldloft.shapes.sketches import Sketch
 moldloft.limits(memory=memory)
 
 def asked(path):

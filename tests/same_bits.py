@@ -125,7 +125,7 @@ def of_program(text: str) -> Iterator[tuple[str, Any]]:
 
 def of_sketch(path: Path) -> Iterator[tuple[str, Any]]:
     """What a sketch is, and what it is when its first dimension has changed."""
-    from moldloft.sketches import Sketch
+    from moldloft.shapes.sketches import Sketch
 
     sketch = Sketch.load(path)
 

@@ -316,7 +316,13 @@ def sdist() -> None:
         with tarfile.open(path) as archive:
             names = {name.split("/", 1)[1] for name in archive.getnames() if "/" in name}
         wanted = ("docs/tutorial.md", "examples/sailboat/hull.sdl", "CHANGELOG.md", "README.md")
-        wanted += ("tests/python/test_api.py", "crates/py/Cargo.toml", "LICENSE-MIT", "Cargo.lock")
+        wanted += (
+            "tests/python/shapes/test_api.py",
+            "crates/py/Cargo.toml",
+            "LICENSE-MIT",
+            "Cargo.lock",
+        )
+        wanted += ("LICENSE-MIT", "Cargo.lock")
         missing = [name for name in wanted if name not in names]
         if missing:
             raise SystemExit(f"{path.name} lacks {', '.join(missing)}")

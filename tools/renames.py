@@ -6,7 +6,7 @@
 Rows are drawn by the seed from all structs with `#[derive(Kind)]`. In one half an argument gets
 another name, within the struct, its columns, its example and the code of its own that reads it; in
 the other half another default. Nothing else is touched. The faces are those of
-`tests/python/test_faces.py`. The tree must be clean; it is left as it was.
+`tests/python/house/test_faces.py`. The tree must be clean; it is left as it was.
 """
 
 from __future__ import annotations
@@ -179,7 +179,7 @@ def check(changes: list[Change]) -> None:
     plain = [(each.row, each.field, each.to) for each in changes]
     run(".venv/bin/python", "-c", f"CHANGES = {plain!r}\n{CHECK}")
     run("make", "reference")
-    run(".venv/bin/python", "-m", "pytest", "--quiet", "tests/python/test_faces.py")
+    run(".venv/bin/python", "-m", "pytest", "--quiet", "tests/python/house/test_faces.py")
     stubs = "".join(path.read_text() for path in ROOT.glob("python/moldloft/**/*.pyi"))
     for each in changes:
         if isinstance(each.to, str) and each.to not in stubs:

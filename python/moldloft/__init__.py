@@ -21,7 +21,6 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from moldloft._core import Diagnostic, __version__
-    from moldloft.blocks import Block, Blocks
     from moldloft.budget import limits
     from moldloft.builder import Builder, model, param
     from moldloft.errors import (
@@ -33,15 +32,16 @@ if TYPE_CHECKING:
         ModelError,
         UnknownNameError,
     )
+    from moldloft.exchange.mesh_files import read_mesh
     from moldloft.fairing import fair
-    from moldloft.hydrostatics import Hydrostatics, HydrostaticTable, RightingCurve
+    from moldloft.hydro.hydrostatics import Hydrostatics, HydrostaticTable, RightingCurve
     from moldloft.implicit import Field, Set
     from moldloft.loading import load, loads
-    from moldloft.mesh import Mesh, Patch
-    from moldloft.mesh_files import read_mesh
     from moldloft.models import Model, Param
-    from moldloft.nurbs import Nurbs
-    from moldloft.objects import (
+    from moldloft.shapes.blocks import Block, Blocks
+    from moldloft.shapes.mesh import Mesh, Patch
+    from moldloft.shapes.nurbs import Nurbs
+    from moldloft.shapes.objects import (
         Bead,
         Body,
         Contours,
@@ -59,8 +59,8 @@ if TYPE_CHECKING:
         Solid,
         Surface,
     )
-    from moldloft.searches import Branch, Intersection, NearestPoints
-    from moldloft.sketches import Sketch, SketchError
+    from moldloft.shapes.searches import Branch, Intersection, NearestPoints
+    from moldloft.shapes.sketches import Sketch, SketchError
 
 __all__ = [
     "Bead",
@@ -117,8 +117,8 @@ __all__ = [
 
 _HOMES = {
     "limits": "moldloft.budget",
-    "Block": "moldloft.blocks",
-    "Blocks": "moldloft.blocks",
+    "Block": "moldloft.shapes.blocks",
+    "Blocks": "moldloft.shapes.blocks",
     "Builder": "moldloft.builder",
     "Diagnostic": "moldloft._core",
     "__version__": "moldloft._core",
@@ -129,42 +129,42 @@ _HOMES = {
     "MissingPackageError": "moldloft.errors",
     "ModelError": "moldloft.errors",
     "UnknownNameError": "moldloft.errors",
-    "HydrostaticTable": "moldloft.hydrostatics",
+    "HydrostaticTable": "moldloft.hydro.hydrostatics",
     "Field": "moldloft.implicit",
     "Set": "moldloft.implicit",
-    "Hydrostatics": "moldloft.hydrostatics",
-    "RightingCurve": "moldloft.hydrostatics",
-    "Mesh": "moldloft.mesh",
-    "Patch": "moldloft.mesh",
+    "Hydrostatics": "moldloft.hydro.hydrostatics",
+    "RightingCurve": "moldloft.hydro.hydrostatics",
+    "Mesh": "moldloft.shapes.mesh",
+    "Patch": "moldloft.shapes.mesh",
     "Model": "moldloft.models",
     "Param": "moldloft.models",
     "load": "moldloft.loading",
     "loads": "moldloft.loading",
-    "read_mesh": "moldloft.mesh_files",
+    "read_mesh": "moldloft.exchange.mesh_files",
     "model": "moldloft.builder",
     "param": "moldloft.builder",
-    "Nurbs": "moldloft.nurbs",
-    "Bead": "moldloft.objects",
-    "Body": "moldloft.objects",
-    "Contours": "moldloft.objects",
-    "Curve": "moldloft.objects",
-    "FieldObject": "moldloft.objects",
-    "Frame": "moldloft.objects",
-    "Magnet": "moldloft.objects",
-    "Object": "moldloft.objects",
-    "Plane": "moldloft.objects",
-    "Point": "moldloft.objects",
-    "Relabel": "moldloft.objects",
-    "Ring": "moldloft.objects",
-    "SetObject": "moldloft.objects",
-    "Snake": "moldloft.objects",
-    "Solid": "moldloft.objects",
-    "Surface": "moldloft.objects",
-    "Branch": "moldloft.searches",
-    "Intersection": "moldloft.searches",
-    "NearestPoints": "moldloft.searches",
-    "Sketch": "moldloft.sketches",
-    "SketchError": "moldloft.sketches",
+    "Nurbs": "moldloft.shapes.nurbs",
+    "Bead": "moldloft.shapes.objects",
+    "Body": "moldloft.shapes.objects",
+    "Contours": "moldloft.shapes.objects",
+    "Curve": "moldloft.shapes.objects",
+    "FieldObject": "moldloft.shapes.objects",
+    "Frame": "moldloft.shapes.objects",
+    "Magnet": "moldloft.shapes.objects",
+    "Object": "moldloft.shapes.objects",
+    "Plane": "moldloft.shapes.objects",
+    "Point": "moldloft.shapes.objects",
+    "Relabel": "moldloft.shapes.objects",
+    "Ring": "moldloft.shapes.objects",
+    "SetObject": "moldloft.shapes.objects",
+    "Snake": "moldloft.shapes.objects",
+    "Solid": "moldloft.shapes.objects",
+    "Surface": "moldloft.shapes.objects",
+    "Branch": "moldloft.shapes.searches",
+    "Intersection": "moldloft.shapes.searches",
+    "NearestPoints": "moldloft.shapes.searches",
+    "Sketch": "moldloft.shapes.sketches",
+    "SketchError": "moldloft.shapes.sketches",
     "fair": "moldloft.fairing",
 }
 

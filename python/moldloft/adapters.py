@@ -25,8 +25,8 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from moldloft.mesh import Mesh
     from moldloft.models import Model
+    from moldloft.shapes.mesh import Mesh
 
 __all__ = [
     "to_capytaine",
@@ -54,7 +54,7 @@ def _panels(
     tolerance: float | None,
     angle: float | None,
 ) -> Mesh:
-    from moldloft.mesh import Mesh
+    from moldloft.shapes.mesh import Mesh
 
     if isinstance(source, Mesh):
         if tags or whole or tolerance is not None or angle is not None:

@@ -21,7 +21,7 @@ from moldloft.arguments import explain
 from moldloft.errors import Error
 
 if TYPE_CHECKING:
-    from moldloft.blocks import Blocks
+    from moldloft.shapes.blocks import Blocks
 
 __all__ = ["Hex", "cut", "encode", "write"]
 

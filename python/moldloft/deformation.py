@@ -28,8 +28,8 @@ import numpy as np
 
 from moldloft.arguments import explain
 from moldloft.errors import Error
-from moldloft.mesh_files import mesh_of_file, mesh_statement
-from moldloft.nurbs import Nurbs
+from moldloft.exchange.mesh_files import mesh_of_file, mesh_statement
+from moldloft.shapes.nurbs import Nurbs
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray

@@ -16,11 +16,11 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from moldloft.hydrostatics import Hydrostatics, _Rows
-    from moldloft.mesh import Mesh, Patch
+    from moldloft.hydro.hydrostatics import Hydrostatics, _Rows
+    from moldloft.hydro.weights import WeightTable
     from moldloft.models import Model
-    from moldloft.objects import Curve, Object, Surface
-    from moldloft.weights import WeightTable
+    from moldloft.shapes.mesh import Mesh, Patch
+    from moldloft.shapes.objects import Curve, Object, Surface
 
     Floats = NDArray[np.float64]
 

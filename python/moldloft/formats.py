@@ -19,8 +19,8 @@ from moldloft.spelling import nearest
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
-    from moldloft.blocks import Blocks
     from moldloft.models import Model
+    from moldloft.shapes.blocks import Blocks
 
 __all__ = ["PYTHON_ROWS", "Format", "format_named", "formats"]
 
@@ -54,7 +54,7 @@ class Format:
     """Grids of points, without a model, can be written."""
     writer: str = ""
     """For rows of Python: ``module:function``, which makes the bytes of the file from the model, or
-    for ``volumes`` from its :class:`moldloft.blocks.Blocks`, and the stem of its name."""
+    for ``volumes`` from its :class:`moldloft.shapes.blocks.Blocks`, and the stem of its name."""
 
     def file_name(self, stem: str) -> str:
         """The name of a model's main file.

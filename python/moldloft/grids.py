@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from moldloft import _core
 from moldloft.arguments import explain
 from moldloft.errors import Error, FileError, FormatError
-from moldloft.files import Output, commit
+from moldloft.exchange.files import Output, commit
 from moldloft.storage import read_bytes
 
 __all__ = [

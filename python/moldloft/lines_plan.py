@@ -725,7 +725,7 @@ def draw(model: Model, path: str | os.PathLike[str], **options: Any) -> Path:
     **options
         Options of :func:`lines_plan`.
     """
-    from moldloft.files import Output, commit
+    from moldloft.exchange.files import Output, commit
 
     path = Path(path)
     writers = {".svg": svg, ".pdf": pdf, ".dxf": dxf}

@@ -9,19 +9,19 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from moldloft import _core
-from moldloft.adapted import Adapted
 from moldloft.arguments import explain, names_of
-from moldloft.derivatives import Differentiable
 from moldloft.errors import Error, ModelError, UnknownNameError
-from moldloft.floating import Floating
-from moldloft.objects import object_of, wrapped
-from moldloft.writing import Writable
+from moldloft.exchange.adapted import Adapted
+from moldloft.exchange.writing import Writable
+from moldloft.hydro.floating import Floating
+from moldloft.shapes.derivatives import Differentiable
+from moldloft.shapes.objects import object_of, wrapped
 
 if TYPE_CHECKING:
-    from moldloft.blocks import Blocks
     from moldloft.loading import Origin
-    from moldloft.mesh import Mesh
-    from moldloft.objects import Entry
+    from moldloft.shapes.blocks import Blocks
+    from moldloft.shapes.mesh import Mesh
+    from moldloft.shapes.objects import Entry
 
 __all__ = ["Adjustment", "Model", "Param", "Solution"]
 
@@ -623,7 +623,7 @@ class Model(Differentiable, Floating, Writable, Adapted):
         >>> len(m.mesh(tolerance=0.01).faces)
         4
         """
-        from moldloft.mesh import Mesh
+        from moldloft.shapes.mesh import Mesh
 
         wanted = [tags] if isinstance(tags, str) else list(tags)
         made = self._document.mesh(wanted, whole, tolerance, angle)
@@ -714,7 +714,7 @@ class Model(Differentiable, Floating, Writable, Adapted):
         ModelError
             If there is no solid, divisions contradict each other, or there are too many cells.
         """
-        from moldloft.blocks import Blocks
+        from moldloft.shapes.blocks import Blocks
 
         return Blocks(self._document.blocks())
 

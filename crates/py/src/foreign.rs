@@ -3,7 +3,7 @@
 use crate::work::visit_python;
 use moldloft::num::{Dual, Dual4, Real, Vec3};
 use moldloft::rows::{
-    Array, CallError, Class, Context, FieldSpec, Foreign, Implementation, Row, Unit, Value, Vectors,
+    Array, CallError, Class, Context, FieldSpec, Foreign, Implementation, Row, Value, Vectors,
 };
 use pyo3::prelude::*;
 use pyo3::types::PyList;
@@ -21,18 +21,10 @@ struct PythonFunction {
 pub fn row(name: String, arguments: Vec<String>, doc: String, function: Py<PyAny>) -> Row {
     let fields: Vec<FieldSpec> = arguments
         .into_iter()
-        .map(|argument| FieldSpec {
+        .map(|argument| {
             // Names of a registry's fields live as long as the program; a user has few functions.
-            name: Box::leak(argument.into_boxed_str()),
-            help: "An argument of the Python function.",
-            class: Class::Any,
-            many: false,
-            default: None,
-            unit: Unit::None,
-            min: None,
-            max: None,
-            min_items: 0,
-            variadic: false,
+            let name = Box::leak(argument.into_boxed_str());
+            FieldSpec::new(name, Class::Any, "An argument of the Python function.")
         })
         .collect();
     Row::new(name.clone(), Implementation::Foreign(Arc::new(PythonFunction { name, function })))

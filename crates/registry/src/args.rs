@@ -14,6 +14,11 @@ pub struct Given<'a, T: Real> {
     pub named: Vec<(&'a str, Value<T>)>,
 }
 
+/// `1 argument`, `2 arguments`: a count in a message.
+pub fn argument_count(count: usize) -> String {
+    format!("{count} argument{}", if count == 1 { "" } else { "s" })
+}
+
 /// Puts arguments in the order of the row's fields, fills in defaults and checks count, names,
 /// classes and ranges; `class_of` gives the class of an object that has not been read. Named
 /// arguments of the head are stored there.
@@ -32,10 +37,10 @@ pub fn bind_arguments<T: Real>(
         let names: Vec<_> = fields.iter().map(|f| f.name).collect();
         return Err(CallError::new(
             "too-many-arguments",
-            format!("{} takes at most {} arguments", row.name, fields.len()),
+            format!("{} takes at most {}", row.name, argument_count(fields.len())),
         )
         .expected(format!("{}({})", row.name, names.join(", ")))
-        .found(format!("{} arguments", given.positional.len()))
+        .found(argument_count(given.positional.len()))
         .in_argument(Argument::Extra));
     }
     let mut args: Vec<Option<Value<T>>> = given.positional.into_iter().map(Some).collect();

@@ -1,7 +1,7 @@
 //! Attributes that every object has besides its geometry: visibility, colour, orientation, divisions and their
 //! spacing. A change of them does not evaluate the object again.
 
-use crate::{CallError, Class, DefaultValue, FieldSpec, Unit, Value};
+use crate::{CallError, Class, DefaultValue, FieldSpec, Value};
 use moldloft_num::Real;
 use std::sync::Arc;
 
@@ -130,18 +130,7 @@ pub struct Attributes {
 const MOST_DIVISIONS: f64 = 1e6;
 
 const fn head(name: &'static str, help: &'static str, default: DefaultValue) -> FieldSpec {
-    FieldSpec {
-        name,
-        help,
-        class: Class::Integer,
-        many: false,
-        default: Some(default),
-        unit: Unit::None,
-        min: None,
-        max: None,
-        min_items: 0,
-        variadic: false,
-    }
+    FieldSpec { default: Some(default), ..FieldSpec::new(name, Class::Integer, help) }
 }
 
 /// The named arguments that every kind accepts besides its own.

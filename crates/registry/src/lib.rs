@@ -28,7 +28,7 @@ mod taped;
 mod triangle_body;
 mod value;
 
-pub use args::{Given, bind_arguments, check_evaluated};
+pub use args::{Given, argument_count, bind_arguments, check_evaluated};
 pub use attributes::{ATTRIBUTES, Attributes, PanelAttributes, Spacing};
 pub use call_error::{Argument, ArgumentPlace, CallError, FieldId};
 pub use class::Class;

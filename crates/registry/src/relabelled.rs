@@ -1,8 +1,7 @@
 //! Curves and surfaces whose parameter is redistributed by a law: the `relabel` of their heads.
 
 use crate::{
-    CallError, Class, CurveRef, DefaultValue, FieldSpec, FromValue, ReparametrizationRef,
-    SurfaceRef, Unit, Value,
+    CallError, Class, CurveRef, FieldSpec, FromValue, ReparametrizationRef, SurfaceRef, Value,
 };
 use moldloft_num::trace::{Edge, Edges, Mark, Piece, Trace};
 use moldloft_num::{
@@ -14,18 +13,8 @@ use std::sync::Arc;
 
 /// The last argument of every kind of curve, and of every surface whose direction across its
 /// masters can be reparametrised.
-pub const RELABEL_FIELD: FieldSpec = FieldSpec {
-    name: "relabel",
-    help: "Reparametrisation of t (surfaces: v).",
-    class: Class::Relabel,
-    many: false,
-    default: Some(DefaultValue::Unset),
-    unit: Unit::None,
-    min: None,
-    max: None,
-    min_items: 0,
-    variadic: false,
-};
+pub const RELABEL_FIELD: FieldSpec =
+    FieldSpec::new("relabel", Class::Relabel, "Reparametrisation of t (surfaces: v).").optional();
 
 /// Breaks nearer to each other than this are one.
 const ONE_BREAK: f64 = 1e-12;

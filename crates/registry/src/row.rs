@@ -159,6 +159,30 @@ pub struct FieldSpec {
     pub variadic: bool,
 }
 
+impl FieldSpec {
+    /// A required argument: one value of `class`, without unit and bounds.
+    pub const fn new(name: &'static str, class: Class, help: &'static str) -> Self {
+        Self {
+            name,
+            help,
+            class,
+            many: false,
+            default: None,
+            unit: Unit::None,
+            min: None,
+            max: None,
+            min_items: 0,
+            variadic: false,
+        }
+    }
+
+    /// The same argument, which may be left out.
+    #[must_use]
+    pub const fn optional(self) -> Self {
+        Self { default: Some(DefaultValue::Unset), ..self }
+    }
+}
+
 /// A function made at run time, such as a user's Python function.
 pub trait Foreign: Send + Sync {
     /// The value for plain numbers.

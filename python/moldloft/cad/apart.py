@@ -24,7 +24,7 @@ from moldloft.cad.occt import cad_bytes, of_part
 from moldloft.cad.part21 import StepText
 from moldloft.child_process import ChildProcess, ProcessEnd, bounded, serve
 from moldloft.errors import Error, FileError
-from moldloft.nurbs import Nurbs
+from moldloft.shapes.nurbs import Nurbs
 
 __all__ = ["read"]
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from moldloft import _core
-from moldloft.nurbs import Nurbs
+from moldloft.shapes.nurbs import Nurbs
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -14,7 +14,7 @@ from moldloft.cad.faces import ImportedFace, border
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from moldloft.nurbs import Nurbs
+    from moldloft.shapes.nurbs import Nurbs
 
     Floats = NDArray[np.float64]
 

@@ -12,7 +12,7 @@ from moldloft.errors import FormatError
 
 if TYPE_CHECKING:
     from moldloft.models import Model
-    from moldloft.nurbs import Nurbs
+    from moldloft.shapes.nurbs import Nurbs
 
 __all__ = ["UNITS", "encode", "saved"]
 

@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from moldloft import _core
-from moldloft.nurbs import Nurbs
+from moldloft.shapes.nurbs import Nurbs
 
 __all__ = ["Imported", "ImportedFace", "ImportedSide", "align", "border", "is_whole"]
 

@@ -17,7 +17,7 @@ from moldloft.cad.faces import Imported, ImportedFace, align
 from moldloft.cad.joining import joins
 from moldloft.colours import MODEL
 from moldloft.errors import Error, FileError
-from moldloft.nurbs import Nurbs, _braced, _plain, _wrapped
+from moldloft.shapes.nurbs import Nurbs, _braced, _plain, _wrapped
 
 if TYPE_CHECKING:
     import os

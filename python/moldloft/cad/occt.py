@@ -27,7 +27,7 @@ from moldloft.cad.part21 import StepText
 from moldloft.cad.rhino_reading import step_text
 from moldloft.cad.sewing import Sewn, faces_of, is_sheet, map_of
 from moldloft.errors import Error, FileError
-from moldloft.nurbs import Nurbs
+from moldloft.shapes.nurbs import Nurbs
 from moldloft.storage import read_bytes
 
 if TYPE_CHECKING:

@@ -17,7 +17,7 @@ from moldloft.errors import FormatError
 
 if TYPE_CHECKING:
     from moldloft.models import Model
-    from moldloft.nurbs import Nurbs
+    from moldloft.shapes.nurbs import Nurbs
 
 __all__ = ["UNIT_SYSTEMS", "encode", "file_bytes"]
 

@@ -28,9 +28,9 @@ from moldloft.cli.console import (
 )
 from moldloft.display import worst_panel
 from moldloft.errors import Error, ModelError
-from moldloft.hydrostatics import Hydrostatics
-from moldloft.mesh import Mesh, Patch
+from moldloft.hydro.hydrostatics import Hydrostatics
 from moldloft.models import Model
+from moldloft.shapes.mesh import Mesh, Patch
 from moldloft.text_table import table, terminal_width
 
 __all__ = ["add", "facts", "run", "summary", "worst_panels"]
@@ -40,7 +40,7 @@ _POLL_SECONDS = 0.2
 
 def add(parser: argparse.ArgumentParser) -> None:
     """Declares the arguments."""
-    from moldloft.files import FORMATS
+    from moldloft.exchange.files import FORMATS
 
     add_model(parser, several=True)
     files = parser.add_argument_group("Files")
@@ -171,7 +171,7 @@ def _build_watched(options: argparse.Namespace) -> list[str]:
 def _build(
     options: argparse.Namespace, sources: list[str] | None = None
 ) -> tuple[int, dict[str, Any]]:
-    from moldloft.files import Output, file_name, produce
+    from moldloft.exchange.files import Output, file_name, produce
     from moldloft.formats import formats
     from moldloft.permissions import write_outputs
 

@@ -220,7 +220,7 @@ def emit(path: str | Path, data: bytes, sources: Sequence[str] = ()) -> Path | N
 
     Sources are never overwritten.
     """
-    from moldloft.files import Output, commit
+    from moldloft.exchange.files import Output, commit
     from moldloft.permissions import check_not_source
 
     if str(path) == "-":
@@ -257,8 +257,8 @@ def _from_standard_input(options: argparse.Namespace) -> Model:
 def _foreign(options: argparse.Namespace) -> Model | None:
     """The model of a mesh or CAD file; None for other files."""
     from moldloft.cad.importing import ENDINGS, imported
+    from moldloft.exchange.mesh_files import holds_mesh, mesh_program
     from moldloft.loading import loads
-    from moldloft.mesh_files import holds_mesh, mesh_program
 
     place = Path(options.model)
     cad = place.suffix.lower() in ENDINGS
@@ -278,7 +278,7 @@ def _foreign(options: argparse.Namespace) -> Model | None:
 def open_model(options: argparse.Namespace) -> Model:
     """The model of the arguments, with the values of ``--set``."""
     from moldloft.errors import Error
-    from moldloft.files import ending
+    from moldloft.exchange.files import ending
     from moldloft.formats import formats
     from moldloft.loading import load
 
@@ -432,7 +432,7 @@ def progress_line(words: str, detail: str, done: float | None, seconds: float) -
 def format_argument(name: str) -> str:
     """The name of a format, for options."""
     from moldloft.errors import Error
-    from moldloft.files import format_named
+    from moldloft.exchange.files import format_named
 
     try:
         return format_named(name)

@@ -22,7 +22,7 @@ __all__ = ["add", "run"]
 
 def add(parser: argparse.ArgumentParser) -> None:
     """Declares the arguments."""
-    from moldloft.files import FORMATS
+    from moldloft.exchange.files import FORMATS
 
     add_model(parser)
     parser.add_argument(
@@ -60,7 +60,7 @@ def add(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Converts; content that the other format cannot represent is an error or a remark."""
-    from moldloft.files import commit, ending, format_named, produce
+    from moldloft.exchange.files import commit, ending, format_named, produce
     from moldloft.formats import formats
     from moldloft.permissions import check_not_source
 
@@ -105,7 +105,7 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _from_cad(options: argparse.Namespace, target: Path | None, form: str) -> int:
-    from moldloft.files import Output, commit, produce
+    from moldloft.exchange.files import Output, commit, produce
     from moldloft.loading import loads
 
     model = None
@@ -136,7 +136,7 @@ def _from_cad(options: argparse.Namespace, target: Path | None, form: str) -> in
 
 def _from_offsets(options: argparse.Namespace, target: Path | None, form: str) -> int:
     from moldloft import offsets
-    from moldloft.files import Output, commit, produce
+    from moldloft.exchange.files import Output, commit, produce
     from moldloft.loading import loads
 
     text = offsets.read(options.model).program(curves=options.curves, closed=options.closed)

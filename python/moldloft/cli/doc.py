@@ -165,7 +165,7 @@ def _draw(rows: list[dict[str, Any]], folder: str) -> None:
     from pathlib import Path
 
     import moldloft
-    from moldloft.files import Output, commit
+    from moldloft.exchange.files import Output, commit
 
     outputs = []
     for row in filter(has_picture, rows):

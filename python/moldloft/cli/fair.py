@@ -548,7 +548,7 @@ def _original(options: argparse.Namespace, count: int) -> Any:
 
 def commit_file(path: Path, data: bytes) -> Path:
     """Write a file atomically."""
-    from moldloft.files import Output, commit
+    from moldloft.exchange.files import Output, commit
 
     return commit(path.parent, [Output(path.name, data)])[0]
 

@@ -18,7 +18,7 @@ from moldloft.cli.console import (
     water,
 )
 from moldloft.errors import Error
-from moldloft.hydrostatics import Hydrostatics, HydrostaticTable, RightingCurve
+from moldloft.hydro.hydrostatics import Hydrostatics, HydrostaticTable, RightingCurve
 from moldloft.text_table import table, terminal_width
 from moldloft.units import header, shown
 
@@ -337,7 +337,7 @@ def _stability(model: Any, options: argparse.Namespace) -> Any:
 
 
 def _criteria(model: Any, options: argparse.Namespace) -> int:
-    from moldloft.stability import Wind
+    from moldloft.hydro.stability import Wind
 
     stability = _stability(model, options)
     wind = Wind(*options.wind) if options.wind else None
@@ -356,8 +356,8 @@ def _criteria(model: Any, options: argparse.Namespace) -> int:
 
 
 def _booklet(model: Any, options: argparse.Namespace) -> int:
-    from moldloft.booklet import write_booklet
-    from moldloft.stability import Wind
+    from moldloft.hydro.booklet import write_booklet
+    from moldloft.hydro.stability import Wind
 
     wind = Wind(*options.wind) if options.wind else None
     rule = options.criteria or "is-code-2008"
@@ -367,7 +367,7 @@ def _booklet(model: Any, options: argparse.Namespace) -> int:
 
 
 def _cross_curves(model: Any, options: argparse.Namespace) -> int:
-    from moldloft.stability import cross_curves
+    from moldloft.hydro.stability import cross_curves
 
     found = cross_curves(
         model,
@@ -391,7 +391,7 @@ def _cross_curves(model: Any, options: argparse.Namespace) -> int:
 
 def _write_csv(options: argparse.Namespace, text: str) -> None:
     """Writes rows to the file of --csv, or to standard output."""
-    from moldloft.files import Output, commit
+    from moldloft.exchange.files import Output, commit
 
     if options.csv == "-":
         emit("-", text.encode())
@@ -424,7 +424,7 @@ def _sections(model: Any, options: argparse.Namespace) -> int:
         )
         _write_csv(options, text.getvalue())
     if options.plot:
-        from moldloft.hydrostatics import plot_curves
+        from moldloft.hydro.hydrostatics import plot_curves
 
         curves = {f"z = {z:g}": areas[:, k].tolist() for k, z in enumerate(levels)}
         path = plot_curves(

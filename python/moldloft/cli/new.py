@@ -17,7 +17,7 @@ def add(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Writes the starter, never over an existing file."""
-    from moldloft.files import Output, commit
+    from moldloft.exchange.files import Output, commit
     from moldloft.starter import STARTER
 
     path = Path(options.file)

@@ -200,7 +200,7 @@ def _command(session: Session, entry: str) -> list[str] | None:
     if word == ":save" and rest.strip():
         from pathlib import Path
 
-        from moldloft.files import Output, commit
+        from moldloft.exchange.files import Output, commit
 
         path = Path(rest.strip())
         commit(path.parent, [Output(path.name, session.model.text.encode())])

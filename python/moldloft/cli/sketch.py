@@ -15,7 +15,7 @@ from moldloft.cli.console import add_force, print_json
 from moldloft.errors import Error, FileError
 
 if TYPE_CHECKING:
-    from moldloft.sketches import Reply, Sketch
+    from moldloft.shapes.sketches import Reply, Sketch
     from moldloft.storage.journal import Journal, Left
 
 __all__ = ["add", "run"]
@@ -60,7 +60,7 @@ def add(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Runs the file, the prompt, or both."""
-    from moldloft.sketches import Sketch
+    from moldloft.shapes.sketches import Sketch
 
     if options.recover and options.file and not options.edit:
         options.edit = True
@@ -138,7 +138,7 @@ class Host:
 
     def run_line(self, line: str, where: str = "") -> None:
         """Runs a line, shows its replies and writes its files."""
-        from moldloft.sketches import Reply
+        from moldloft.shapes.sketches import Reply
 
         typed = self.typed
         # What a file that is read in asks for is not asked for here.
@@ -163,7 +163,7 @@ class Host:
         self.typed = typed
 
     def _write(self, reply: Reply, file: tuple[str, bytes]) -> Reply:
-        from moldloft.sketches import Reply
+        from moldloft.shapes.sketches import Reply
 
         path = Path(self.options.output, file[0])
         try:
@@ -174,7 +174,7 @@ class Host:
         return Reply("note", f"wrote {path} ({len(file[1])} bytes)")
 
     def _write_file(self, name: str, path: Path, data: bytes) -> None:
-        from moldloft.files import Output, commit
+        from moldloft.exchange.files import Output, commit
         from moldloft.permissions import write_outputs
         from moldloft.storage import digest, put
 

@@ -452,7 +452,7 @@ class Desk:
         pathlib.Path
             The file.
         """
-        from moldloft.files import Output, commit
+        from moldloft.exchange.files import Output, commit
 
         path = Path(path)
         commit(path.parent, [Output(path.name, self.encoded(path.name))])

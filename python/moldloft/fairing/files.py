@@ -15,11 +15,11 @@ import numpy as np
 from moldloft import _core
 from moldloft.arguments import explain
 from moldloft.errors import FairingError, FileError, FormatError
+from moldloft.exchange.files import Output, commit
 from moldloft.fairing.blocks import blocks
 from moldloft.fairing.cells import Cells, lines_at, rounded, step_of, written_as
 from moldloft.fairing.matrix import OffsetTable, matrix
 from moldloft.fairing.tables import plain, spans
-from moldloft.files import Output, commit
 from moldloft.grids import Plot3DVariant, decode_plot3d, encode_plot3d
 from moldloft.storage import read_bytes
 

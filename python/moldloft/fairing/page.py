@@ -542,7 +542,7 @@ def write_page(
     pathlib.Path
         The file.
     """
-    from moldloft.files import Output, commit
+    from moldloft.exchange.files import Output, commit
 
     path = Path(path)
     if path.suffix.lower() not in (".html", ".htm"):

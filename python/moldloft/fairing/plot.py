@@ -63,7 +63,7 @@ def needed() -> Any:
 
 
 def _saved(draw: Any, size: tuple[float, float], path: str | PathLike[str]) -> None:
-    from moldloft.files import Output, commit
+    from moldloft.exchange.files import Output, commit
 
     path = Path(path)
     kind = path.suffix.lower().removeprefix(".")

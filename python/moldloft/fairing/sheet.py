@@ -641,7 +641,7 @@ def write_sheet(
     >>> write_sheet(faired, getfixture("tmp_path") / "sheet.html", "A sine", details).name
     'sheet.html'
     """
-    from moldloft.files import Output, commit
+    from moldloft.exchange.files import Output, commit
 
     path = Path(path)
     ending = path.suffix.lower()

@@ -341,14 +341,14 @@ class Facets:
         path
             The file.
         format
-            The name of a format, see :data:`moldloft.files.FORMATS`.
+            The name of a format, see :data:`moldloft.exchange.files.FORMATS`.
 
         Returns
         -------
         pathlib.Path
             The file.
         """
-        from moldloft.files import Output, commit
+        from moldloft.exchange.files import Output, commit
 
         target = Path(path)
         wanted = (format or target.suffix.lstrip(".")).lower()
@@ -374,7 +374,7 @@ class Facets:
         """
         png = self._core.picture(int(size[0]), int(size[1]))
         if path is not None:
-            from moldloft.files import Output, commit
+            from moldloft.exchange.files import Output, commit
 
             target = Path(path)
             commit(target.parent, [Output(target.name, png)], make=False)

@@ -155,7 +155,7 @@ class Pictured:
             shares,
         )
         if path is not None:
-            from moldloft.files import Output, commit
+            from moldloft.exchange.files import Output, commit
 
             target_path = Path(path)
             commit(target_path.parent, [Output(target_path.name, png)], make=False)

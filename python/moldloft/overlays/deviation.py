@@ -177,7 +177,7 @@ def deviation(model: Model, points: ArrayLike, *, objects: Sequence[str] | str =
 
 
 def _surfaces(model: Model, objects: Sequence[str] | str) -> list[str]:
-    from moldloft.objects import Surface
+    from moldloft.shapes.objects import Surface
 
     if objects:
         names = [objects] if isinstance(objects, str) else list(objects)

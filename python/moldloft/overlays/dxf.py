@@ -15,9 +15,9 @@ import numpy as np
 from moldloft.budget import limits
 from moldloft.cad import identifier, needed
 from moldloft.errors import FileError
-from moldloft.nurbs import Nurbs
 from moldloft.overlays.overlay import Overlay
 from moldloft.overlays.pieces import arc, joined, line
+from moldloft.shapes.nurbs import Nurbs
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -15,8 +15,8 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from moldloft.models import Model
-    from moldloft.nurbs import Nurbs
     from moldloft.overlays.deviation import Deviation
+    from moldloft.shapes.nurbs import Nurbs
 
     Floats = NDArray[np.float64]
 

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from moldloft.errors import FileError
-from moldloft.nurbs import Nurbs
+from moldloft.shapes.nurbs import Nurbs
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray

@@ -13,9 +13,9 @@ import numpy as np
 
 from moldloft.cad import identifier
 from moldloft.errors import FileError
-from moldloft.nurbs import Nurbs
 from moldloft.overlays.overlay import Overlay
 from moldloft.overlays.pieces import arc, bezier, joined, line
+from moldloft.shapes.nurbs import Nurbs
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -17,10 +17,10 @@ from typing import Any
 
 from moldloft.budget import parsed
 from moldloft.errors import Error
+from moldloft.exchange.writing import Writable
 from moldloft.formats import format_named
 from moldloft.spelling import nearest
 from moldloft.storage import read_text
-from moldloft.writing import Writable
 
 __all__ = [
     "Analysis",

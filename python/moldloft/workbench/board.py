@@ -17,7 +17,7 @@ from typing import Any
 
 from moldloft import _core
 from moldloft.errors import Error
-from moldloft.sketch_values import Reply
+from moldloft.shapes.sketch_values import Reply
 from moldloft.workbench.outlines import outlines
 from moldloft.workbench.room import answer_frames
 from moldloft.workbench.snaps import Axes, snapped

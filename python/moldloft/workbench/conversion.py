@@ -15,7 +15,7 @@ from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any
 
 from moldloft.errors import Error
-from moldloft.files import file_name, produce
+from moldloft.exchange.files import file_name, produce
 from moldloft.formats import formats
 from moldloft.workbench.frames import frame_of
 from moldloft.workbench.room import answer_frames

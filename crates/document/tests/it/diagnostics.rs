@@ -151,7 +151,7 @@ fn tests_of_crates() -> String {
 /// Ids that no program alone can raise, or that other tests raise because they take long.
 const ELSEWHERE: [&str; 27] = [
     "silent",
-    // Bodies of sketches that lie on each other: tests/python/test_sketch_derivatives.py.
+    // Bodies of sketches that lie on each other: tests/python/sketch/test_sketch_derivatives.py.
     "no-derivative",
     // 256 MB of output, a thousand open files.
     "too-much-output",

@@ -245,18 +245,7 @@ impl Foreign for Outside {
 
 #[test]
 fn functions_from_outside_are_one_node_a_number() {
-    let field = |name, class| FieldSpec {
-        name,
-        help: "",
-        class,
-        many: false,
-        default: None,
-        unit: moldloft_registry::Unit::None,
-        min: None,
-        max: None,
-        min_items: 0,
-        variadic: false,
-    };
+    let field = |name, class| FieldSpec::new(name, class, "");
     let fields =
         vec![field("a", Class::Number), field("b", Class::Number), field("v", Class::Vector)];
     let row = Row::new("outside", Implementation::Foreign(Arc::new(Outside))).fields(fields);

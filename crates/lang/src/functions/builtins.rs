@@ -6,8 +6,7 @@ use crate::functions::grid_formats;
 use crate::functions::run_call::{RunBody, SequenceUse};
 use moldloft_num::Dual4;
 use moldloft_registry::{
-    CallError, Class, Context, DefaultValue, FieldSpec, Foreign, Implementation, Row, Scalar, Unit,
-    Value,
+    CallError, Class, Context, FieldSpec, Foreign, Implementation, Row, Scalar, Value,
 };
 use std::sync::Arc;
 
@@ -33,52 +32,35 @@ impl Foreign for NeedsRun {
     }
 }
 
-const fn field(name: &'static str, class: Class, help: &'static str) -> FieldSpec {
-    FieldSpec {
-        name,
-        help,
-        class,
-        many: false,
-        default: None,
-        unit: Unit::None,
-        min: None,
-        max: None,
-        min_items: 0,
-        variadic: false,
-    }
-}
-
-const fn optional(field: FieldSpec) -> FieldSpec {
-    FieldSpec { default: Some(DefaultValue::Unset), ..field }
-}
-
 /// An argument that is repeated; those behind it are, too.
 const fn several(field: FieldSpec) -> FieldSpec {
     FieldSpec { many: true, variadic: true, ..field }
 }
 
-const FILE: FieldSpec = field("name", Class::Text, "Name of the file, beside the program.");
+const FILE: FieldSpec =
+    FieldSpec::new("name", Class::Text, "Name of the file, beside the program.");
 
 const BLOCK: FieldSpec =
-    optional(field("block", Class::Integer, "Number of the block in the file; default 1."));
+    FieldSpec::new("block", Class::Integer, "Number of the block in the file; default 1.")
+        .optional();
 
-const ARRAYS: FieldSpec = several(field(
+const ARRAYS: FieldSpec = several(FieldSpec::new(
     "s",
     Class::Any,
     "Curves, surfaces or blocks to write; a list counts as its members.",
 ));
 
-const BLOCKS: FieldSpec = several(field(
+const BLOCKS: FieldSpec = several(FieldSpec::new(
     "b",
     Class::Any,
     "Blocks, or surfaces in one plane; a list counts as its members.",
 ));
 
-const FACES: FieldSpec = optional(field(
+const FACES: FieldSpec = FieldSpec::new(
     "faces",
     Class::Text,
     "Boundaries of the block before it, such as `k1 = hull wall, i1 in = plane symmetry`: faces (of a surface i1, im, j1, jn), a name and one of the types \"wall\", \"symmetry\", \"farfield\", \"inflow\", \"outflow\", \"periodic\", \"empty\", \"wedge\", \"patch\".",
-));
+).optional();
 
 /// Declares the functions: name, class of the value, arguments, documentation, example and body.
 macro_rules! functions {
@@ -107,8 +89,8 @@ macro_rules! functions {
 
 functions! {
     "format" Text [
-        field("pattern", Class::Text, "Text with directives as in C: %d %i %f %e %g %s, with flags and widths."),
-        optional(several(field("values", Class::Any, "Numbers, texts and points for the directives."))),
+        FieldSpec::new("pattern", Class::Text, "Text with directives as in C: %d %i %f %e %g %s, with flags and widths."),
+        several(FieldSpec::new("values", Class::Any, "Numbers, texts and points for the directives.")).optional(),
     ]
         "Formats numbers by C directives; the pattern repeats for the remaining values."
         "assert format(\"%6.2f|%d\", 2.5, 3) == \"  2.50|3\";"
@@ -116,75 +98,75 @@ functions! {
 
     "open" Integer [
         FILE,
-        optional(field("mode", Class::Text, "\"r\", \"w\" or \"a\"; \"r\" by default.")),
-        optional(field("unit", Class::Integer, "Number of the unit; may be the first argument, as in open(7, name).")),
+        FieldSpec::new("mode", Class::Text, "\"r\", \"w\" or \"a\"; \"r\" by default.").optional(),
+        FieldSpec::new("unit", Class::Integer, "Number of the unit; may be the first argument, as in open(7, name).").optional(),
     ]
         "Opens a text file to read (\"r\"), write (\"w\") or append (\"a\"); open(7, name) chooses the unit."
         "file f = open(\"a.txt\", \"w\"); write(f, 1, {2, 3, 4}); close(f);"
         |run, call| run.open_file(call);
 
-    "close" Nothing [field("f", Class::Any, "The file, or its unit.")]
+    "close" Nothing [FieldSpec::new("f", Class::Any, "The file, or its unit.")]
         "Closes a file."
         "open(7, \"a.txt\"); close(7);"
         |run, call| run.close_file(call);
 
     "write" Nothing [
-        field("f", Class::Any, "The file, its unit, or `stdout`."),
-        optional(several(field("values", Class::Any, "Texts, numbers, points and arrays, each from a new line."))),
+        FieldSpec::new("f", Class::Any, "The file, its unit, or `stdout`."),
+        several(FieldSpec::new("values", Class::Any, "Texts, numbers, points and arrays, each from a new line.")).optional(),
     ]
         "Writes values to a file: a point or number on each line, the first index of a grid fastest."
         "write(stdout, \"two points\", {{1, 2, 3}, {4, 5, 6}});"
         |run, call| run.write_values(call);
 
     "read" Nothing [
-        field("f", Class::Any, "The file, or its unit."),
-        several(field("variables", Class::Any, "Variables, elements and sections to fill, in order.")),
+        FieldSpec::new("f", Class::Any, "The file, or its unit."),
+        several(FieldSpec::new("variables", Class::Any, "Variables, elements and sections to fill, in order.")),
     ]
         "Reads numbers into variables or parts of them; a string takes the rest of the line."
         "open(7, \"a.txt\"); write(7, {1, 2, 3}); close(7); file f = open(\"a.txt\", \"r\"); vector v; read(f, v); assert v.z == 3;"
         |run, call| run.read_values(call);
 
-    "more" Number [field("c", Class::Any, "The multiple argument, or the file.")]
+    "more" Number [FieldSpec::new("c", Class::Any, "The multiple argument, or the file.")]
         "Reports whether a multiple argument, or a file, has unread items."
         "function float total(float x...) { float s = 0; while (more(x)) s += next(x); return s; } assert total(1, 2) == 3;"
         |run, call| run.sequence(call, SequenceUse::More);
 
-    "next" Any [field("c", Class::Any, "The multiple argument.")]
+    "next" Any [FieldSpec::new("c", Class::Any, "The multiple argument.")]
         "The next item of a multiple argument."
         "function float second(float x...) { next(x); return next(x); } assert second(1, 2) == 2;"
         |run, call| run.sequence(call, SequenceUse::Next);
 
-    "rewind" Nothing [field("c", Class::Any, "The multiple argument, or the file.")]
+    "rewind" Nothing [FieldSpec::new("c", Class::Any, "The multiple argument, or the file.")]
         "Returns to the first item of a multiple argument, or to the start of a file."
         "function float first(float x...) { next(x); rewind(x); return next(x); } assert first(1, 2) == 1;"
         |run, call| run.sequence(call, SequenceUse::Rewind);
 
-    "count" Number [field("c", Class::Any, "Multiple argument, list or mask.")]
+    "count" Number [FieldSpec::new("c", Class::Any, "Multiple argument, list or mask.")]
         "The number of items of a multiple argument or a list; for a mask, the number of true elements."
         "function float n(float x...) { return count(x); } assert n(5, 6, 7) == 3;"
         |run, call| run.sequence(call, SequenceUse::Count);
 
-    "isset" Number [field("a", Class::Any, "The variable, element or section.")]
+    "isset" Number [FieldSpec::new("a", Class::Any, "The variable, element or section.")]
         "Reports whether a variable, or every element of a section, has a value."
         "curve c[3]; c[1:2] = {0, 0, 0}; assert isset(c[2]) and not isset(c);"
         |run, call| run.is_set(call);
 
-    "ieee" Nothing [optional(field("on", Class::Number, "0: errors again; default 1."))]
+    "ieee" Nothing [FieldSpec::new("on", Class::Number, "0: errors again; default 1.").optional()]
         "Lets infinite results and NaN pass from here on, such as that of 1/0, or with 0 makes them errors again."
         "ieee(); float a = 1/0; assert a > 1e308; ieee(0);"
         |run, call| run.ieee(call);
 
-    "check_edges" Nothing [field("s", Class::Vectors, "The surface.")]
+    "check_edges" Nothing [FieldSpec::new("s", Class::Vectors, "The surface.")]
         "Stops with location and gap when the four edges of a surface are not set or do not meet."
         "surface s[3,3] = {0, 0, 0}; check_edges(s);"
         |run, call| run.check_edges(call);
 
-    "refined" Number [field("n", Class::Integer, "The number of points of the coarse run.")]
+    "refined" Number [FieldSpec::new("n", Class::Integer, "The number of points of the coarse run.")]
         "`n` points, or more when the run is refined: intervals are halved, so that coarse points recur."
         "farray s = uniform(0, 1, refined(5));"
         |run, call| run.refined_count(call);
 
-    "refined_step" Number [field("ds", Class::Number, "The step of the coarse run.")]
+    "refined_step" Number [FieldSpec::new("ds", Class::Number, "The step of the coarse run.")]
         "A step per index consistent with refined(n): halved at each refinement; for d_tanhx, geometric and geometric2 the first cell of the coarse run is divided in two."
         "farray s = d_tanh(0, 1, refined_step(.01), 0, refined(25));"
         |run, call| run.refined_step(call);
@@ -196,8 +178,8 @@ functions! {
 
     "write_p3d" Nothing [
         FILE,
-        optional(field("words", Class::Text, "Variant: \"stream\", \"records\" or \"text\"; \"double\" or \"single\"; \"multi\" or \"single-block\"; \"3d\" or \"2d\"; \"whole\" or \"planes\"; \"little\" or \"big\"; \"iblank\"; \"mark8\". The first of each by default.")),
-        several(field("s", Class::Any, "Arrays to write; an farray of integers after one is its blanking.")),
+        FieldSpec::new("words", Class::Text, "Variant: \"stream\", \"records\" or \"text\"; \"double\" or \"single\"; \"multi\" or \"single-block\"; \"3d\" or \"2d\"; \"whole\" or \"planes\"; \"little\" or \"big\"; \"iblank\"; \"mark8\". The first of each by default.").optional(),
+        several(FieldSpec::new("s", Class::Any, "Arrays to write; an farray of integers after one is its blanking.")),
     ]
         "Writes curves, surfaces or blocks as a Plot3D file."
         "surface s[3,2] = {1, 2, 3}; write_p3d(\"s.x\", \"records single\", s); surface t = read_p3d(\"s.x\"); assert t.d1 == 3;"
@@ -209,9 +191,9 @@ functions! {
         |run, call| run.write_grids(call, &grid_formats::VTS);
 
     "plot" Nothing [
-        field("name", Class::Text, "Name of the file, ending in .png or .svg."),
-        optional(field("view", Class::Text, "\"x\", \"y\", \"z\", \"-x\", \"-y\", \"-z\" or \"iso\"; default: the view with the largest image.")),
-        several(field("s", Class::Any, "Curves, surfaces and blocks to draw.")),
+        FieldSpec::new("name", Class::Text, "Name of the file, ending in .png or .svg."),
+        FieldSpec::new("view", Class::Text, "\"x\", \"y\", \"z\", \"-x\", \"-y\", \"-z\" or \"iso\"; default: the view with the largest image.").optional(),
+        several(FieldSpec::new("s", Class::Any, "Curves, surfaces and blocks to draw.")),
     ]
         "Draws curves, surfaces and blocks to a .png or .svg; plot(name, view, ...) looks from \"x\", \"-y\", \"z\", \"iso\" ..."
         "curve c[30]; c.x = uniform(0, 1, 30); c.y = c.x^2; plot(\"parabola.svg\", c);"
@@ -219,7 +201,7 @@ functions! {
 
     "write_stl" Nothing [
         FILE,
-        optional(field("words", Class::Text, "\"flip\" reverses the normals.")),
+        FieldSpec::new("words", Class::Text, "\"flip\" reverses the normals.").optional(),
         ARRAYS,
     ]
         "Writes surfaces as binary STL, with facets facing out of the body and without the triangles of zero area at poles; \"flip\" reverses the normals."
@@ -243,7 +225,7 @@ functions! {
 
     "write_blockmesh" Nothing [
         FILE,
-        optional(field("words", Class::Text, "\"graded\": few blocks with curved, graded edges; blockMesh interpolates between the edges.")),
+        FieldSpec::new("words", Class::Text, "\"graded\": few blocks with curved, graded edges; blockMesh interpolates between the edges.").optional(),
         BLOCKS,
         FACES,
     ]
@@ -271,7 +253,7 @@ functions! {
         "surface s[2,2]; s[1,] = {{0, 0, 0}, {0, 1, 0}}; s[2,] = {{1, 0, 0}, {1, 1, 0}}; block b = {s, s + {0, 0, 1}}; block c = b + {1, 0, 0}; print interfaces(b, \"i1 j1 jn k1 kn = box wall\", c, \"in j1 jn k1 kn = box wall\");"
         |run, call| run.interfaces(call);
 
-    "write_csv" Nothing [FILE, several(field("c", Class::Vectors, "Curves or surfaces to write."))]
+    "write_csv" Nothing [FILE, several(FieldSpec::new("c", Class::Vectors, "Curves or surfaces to write."))]
         "Writes points as lines of x,y,z under a heading, with all digits."
         "curve c[2] = {1, 2, 3}; write_csv(\"c.csv\", c); assert read_points(\"c.csv\")[2] . {1, 0, 0} == 1;"
         |run, call| run.write_grids(call, &grid_formats::CSV);
@@ -293,7 +275,7 @@ functions! {
 
     "read_cgns" Any [
         FILE,
-        optional(field("zone", Class::Any, "Number or name of the zone; default 1.")),
+        FieldSpec::new("zone", Class::Any, "Number or name of the zone; default 1.").optional(),
     ]
         "A structured zone of a CGNS file (HDF5) as a surface or block."
         "surface s[3,2] = {1, 2, 3}; write_cgns(\"s.cgns\", s); surface t = read_cgns(\"s.cgns\", \"s\"); assert t.d1 == 3;"

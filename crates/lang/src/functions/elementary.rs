@@ -5,25 +5,13 @@ use crate::value::variables::Called as _;
 use moldloft_num::{Real, Vec3, log10, modulo, whole_quotient};
 use moldloft_registry::export::field_id;
 use moldloft_registry::{
-    Array, ArrayShape, CallError, Class, Context, DefaultValue, FieldSpec, Implementation, Row,
-    Unit, Value, Vectors,
+    Array, ArrayShape, CallError, Class, Context, FieldSpec, Implementation, Row, Value, Vectors,
 };
 use std::borrow::Cow;
 use std::sync::Arc;
 
 const fn argument(name: &'static str, help: &'static str) -> FieldSpec {
-    FieldSpec {
-        name,
-        help,
-        class: Class::Any,
-        many: false,
-        default: None,
-        unit: Unit::None,
-        min: None,
-        max: None,
-        min_items: 0,
-        variadic: false,
-    }
+    FieldSpec::new(name, Class::Any, help)
 }
 
 fn not_a_number<T: Real>(value: &Value<T>, position: usize) -> CallError {
@@ -436,7 +424,7 @@ fn hypotenuse<T: Real>(a: T, b: T) -> T {
 }
 
 fn optional(name: &'static str) -> FieldSpec {
-    FieldSpec { default: Some(DefaultValue::Unset), ..argument(name, "Another number.") }
+    argument(name, "Another number.").optional()
 }
 
 fn several() -> Vec<FieldSpec> {
@@ -445,10 +433,7 @@ fn several() -> Vec<FieldSpec> {
         optional("b"),
         optional("c"),
         optional("d"),
-        FieldSpec {
-            default: Some(DefaultValue::Unset),
-            ..argument("axis", "1 or 2: reduces numbers [m,n] along that index to a row.")
-        },
+        argument("axis", "1 or 2: reduces numbers [m,n] along that index to a row.").optional(),
     ]
 }
 
@@ -541,10 +526,7 @@ pub fn rows() -> Vec<Row> {
         "The mean of the numbers or vectors of an array; `mean` is the same.",
         vec![
             argument("a", "A row or grid of numbers."),
-            FieldSpec {
-                default: Some(DefaultValue::Unset),
-                ..argument("axis", "1 or 2: the means along that index, a row.")
-            },
+            argument("axis", "1 or 2: the means along that index, a row.").optional(),
         ],
         "assert average(list(1, 2, 6)) == 3;",
         average

@@ -3,7 +3,7 @@
 use crate::run::interpreter::Interpreter;
 use crate::source::module::Module;
 use moldloft_diag::{Diagnostic, Span};
-use moldloft_registry::{Row, Scalar, Value};
+use moldloft_registry::{Row, Scalar, Value, argument_count};
 use moldloft_syntax::sdl::{Arg, ExprId, NodeList};
 
 /// The body of a function.
@@ -89,8 +89,8 @@ impl<'a> RunCall<'a> {
                 Some(&at) => at,
                 None if repeats => fields.len() - 1,
                 None => {
-                    let message = format!("{} takes {} arguments", row.name, fields.len());
-                    let found = format!("{} arguments", args.len());
+                    let message = format!("{} takes {}", row.name, argument_count(fields.len()));
+                    let found = argument_count(args.len());
                     return Err(fault("too-many-arguments", message, span).found(found));
                 }
             };
@@ -108,7 +108,7 @@ impl<'a> RunCall<'a> {
         };
         if let Some(at) = (0..fields.len()).find(missing) {
             let message = format!("{} needs `{}`", row.name, fields[at].name);
-            let found = format!("{} arguments", args.len());
+            let found = argument_count(args.len());
             return Err(fault("missing-argument", message, span).found(found));
         }
         Ok(Self { m, row, span, given })

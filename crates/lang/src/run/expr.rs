@@ -14,7 +14,7 @@ use moldloft_model::Failure;
 use moldloft_num::{Order, Vec3};
 use moldloft_registry::{
     Array, ArrayShape, Class, CurveRef, Given, Implementation, Role, Row, Scalar, SurfaceRef,
-    Value, Vectors, bind_arguments, many,
+    Value, Vectors, argument_count, bind_arguments, many,
 };
 use moldloft_syntax::number;
 use moldloft_syntax::sdl::{
@@ -709,7 +709,7 @@ pub(crate) fn shape_at<T: Scalar>(value: &Value<T>, args: &[Value<T>]) -> Evalua
     let count = |expected: &str| {
         Diagnostic::error("wrong-count", format!("expected {expected}"))
             .expected(expected.to_string())
-            .found(format!("{} arguments", args.len()))
+            .found(argument_count(args.len()))
     };
     let row = |points: Vec<Vec3<T>>| Value::Vectors(Arc::new(Vectors::row(points)));
     match (value, args) {

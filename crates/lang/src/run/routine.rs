@@ -6,7 +6,7 @@ use crate::source::scope::{Binding, CallFrame, Multiple, Passed, ScopedBinding};
 use crate::value::subarray::Place;
 use crate::value::variables;
 use moldloft_diag::{Diagnostic, Span};
-use moldloft_registry::{Scalar, Value};
+use moldloft_registry::{Scalar, Value, argument_count};
 use moldloft_syntax::sdl::{Arg, ExprId, Formal, ItemType, NodeList, Type};
 use std::sync::Arc;
 
@@ -234,11 +234,11 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                 None => {
                     return Err(Diagnostic::error(
                         "too-many-arguments",
-                        format!("{name} takes {} arguments", formals.len()),
+                        format!("{name} takes {}", argument_count(formals.len())),
                     )
                     .at(m.program[arg.value].span)
                     .expected(&signature)
-                    .found(format!("{} arguments", given.len())));
+                    .found(argument_count(given.len())));
                 }
             };
             if !ordered[at].is_empty() && !formals[at].multiple {
@@ -258,7 +258,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                 )
                 .at(span)
                 .expected(&signature)
-                .found(format!("{} arguments", given.len()))
+                .found(argument_count(given.len()))
                 .note_at(formal.name.span, "declared here"));
             }
         }

@@ -14,7 +14,7 @@ use crate::source::module::{Module, Modules, Name, RoutineAt};
 use crate::source::scope::RecordAt;
 use crate::value::variables::described;
 use moldloft_diag::{Diagnostic, Severity, Span, nearest};
-use moldloft_registry::{Registry, Row};
+use moldloft_registry::{Registry, Row, argument_count};
 use moldloft_syntax::sdl::{
     Arg, AssignOp, BinaryOp, Declarator, ExprId, ExprKind, Formal, Ident, NodeList, Routine,
     StmtId, StmtKind, Symbol, Type, UnaryOp,
@@ -392,11 +392,11 @@ impl<'a> Semantics<'a> {
             self.say(
                 Diagnostic::warning(
                     "too-many-arguments",
-                    format!("{} takes {most} arguments", row.name),
+                    format!("{} takes {}", row.name, argument_count(most)),
                 )
                 .at(span)
                 .expected(signature(row))
-                .found(format!("{positional} arguments")),
+                .found(argument_count(positional)),
             );
         }
         let mut named: HashSet<&str> = HashSet::new();
@@ -460,11 +460,11 @@ impl<'a> Semantics<'a> {
                     return self.say(
                         Diagnostic::warning(
                             "too-many-arguments",
-                            format!("{name} takes {} arguments", formals.len()),
+                            format!("{name} takes {}", argument_count(formals.len())),
                         )
                         .at(m.program[arg.value].span)
                         .expected(&signature)
-                        .found(format!("{} arguments", given.len())),
+                        .found(argument_count(given.len())),
                     );
                 }
             }
@@ -476,7 +476,7 @@ impl<'a> Semantics<'a> {
                 Diagnostic::warning("missing-argument", format!("{name} needs `{}`", spelled[k]))
                     .at(span)
                     .expected(&signature)
-                    .found(format!("{} arguments", given.len()))
+                    .found(argument_count(given.len()))
                     .note_at(formals[k].name.span, "declared here"),
             );
         }

@@ -1,0 +1,1 @@
+"""Figures of bodies in water: hydrostatics, stability, weights, the stability booklet."""

@@ -1,0 +1,1 @@
+"""Objects of a model in Python, their measures and derivatives, meshes, sketches."""
