@@ -19,7 +19,7 @@ pub enum ExactCurve {
         centre: Vec3,
         /// A semi-axis.
         x: Vec3,
-        /// The other one.
+        /// The other semi-axis.
         y: Vec3,
     },
 }

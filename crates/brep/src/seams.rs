@@ -73,7 +73,7 @@ impl FacetNet {
         Ok(net)
     }
 
-    /// The same with the vertices within reach of a point merged into one.
+    /// The net of labelled triangles with the vertices within reach of a point merged into one.
     pub fn pinned(&self, place: Vec3, reach: f64) -> Option<Self> {
         let inside: Vec<bool> = self.positions.iter().map(|p| p.distance(place) <= reach).collect();
         let Some(one) = inside.iter().position(|i| *i) else {
@@ -447,7 +447,7 @@ impl FacetNet {
         Some(axes)
     }
 
-    /// The same for a face on the image of a surface of revolution, in the coordinates of the image.
+    /// The prepared patch of a face on the image of a surface of revolution, in the coordinates of the image.
     pub fn prepared_image(
         &mut self,
         group: u32,

@@ -311,7 +311,7 @@ type Block<P> = Cell<[<P as Packs>::Pack; BLOCK]>;
 /// The memory that all rows of a stretch take together at most, in bytes: well inside a first cache of 32 KiB.
 const STRETCH: usize = 30 << 10;
 
-/// The same for sources and results that exceed the cache: writing to such memory waits for it,
+/// Memory of the rows of a stretch for sources and results that exceed the cache: writing to such memory waits for it,
 /// less so when there is other work between.
 const STRETCH_FAR: usize = 16 << 10;
 

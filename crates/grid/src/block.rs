@@ -67,7 +67,7 @@ struct TransfiniteBlock<'a, T> {
     size: [usize; 3],
 }
 
-/// The other two axes, in order.
+/// For each axis the other two, in order.
 const OTHERS: [[usize; 2]; 3] = [[1, 2], [0, 2], [0, 1]];
 
 /// The parameters of the four edges along an axis: at the low and high ends of the first other axis

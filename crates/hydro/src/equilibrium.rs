@@ -258,13 +258,13 @@ impl<'m> EquilibriumProblem<'m, f64> {
         })
     }
 
-    /// The same with rough integrals, where they are not rough already.
+    /// The search with rough integrals; `None` if they are rough already.
     fn rough(&self) -> Option<Self> {
         let rough = || Self { accuracy: ROUGH, tight: NEARLY, ..self.with(self.free.clone()) };
         (self.accuracy < ROUGH).then(rough)
     }
 
-    /// The same with other free unknowns.
+    /// The search with other free unknowns.
     fn with(&self, free: Vec<usize>) -> Self {
         let Self { body, water, loading, count, size, accuracy, tight, .. } = *self;
         Self { body, water, loading, free, count, size, accuracy, tight }

@@ -159,7 +159,7 @@ pub(crate) struct Cells {
     pub bents: Vec<Bent>,
     /// The tree, root first; empty for a single cell.
     pub forks: Vec<Fork>,
-    /// The same for nearest points, with four children each.
+    /// The tree for nearest points, with four children each.
     pub quads: Vec<Quad>,
     /// Halvings of the pieces, for intersections: the pieces first, in their order.
     pub twigs: Vec<Twig>,
@@ -345,7 +345,7 @@ impl Cells {
         Self::cut(surface, FINE_BEND, false)
     }
 
-    /// The same for one intersection, into larger cells.
+    /// Cuts a surface up for one intersection, into larger cells.
     pub fn coarse(surface: &dyn Surface<f64>) -> Self {
         Self::cut(surface, COARSE_BEND, false)
     }

@@ -365,7 +365,7 @@ impl<'a> Crossing<'a> {
         Lanes::new().run(Look(self, q, [x, d]))
     }
 
-    /// The same by the registers at hand.
+    /// Both shapes near the point, by the registers at hand.
     #[inline(always)]
     fn view_by<S: pulp::Simd>(&self, simd: S, q: Unknowns, x: Vec3, d: Vec3) -> MarchResidual {
         if let [Some(a), Some(b)] = self.quick {
@@ -434,7 +434,7 @@ impl<'a> Crossing<'a> {
         Lanes::new().run(NewtonSteps(self, guess, [x, d], until))
     }
 
-    /// The same, up to a step so short that nothing is evaluated again: the tangent is then that of
+    /// Newton steps up to one so short that nothing is evaluated again: the tangent is then that of
     /// the previous point.
     #[inline(always)]
     fn steps_by<S: pulp::Simd>(

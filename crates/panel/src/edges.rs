@@ -163,7 +163,7 @@ pub(crate) fn evaluated<T: Scalar>(
     points
 }
 
-/// The same in parts of about `most` points, one after the other: those of a range of which `wanted` says so, each with
+/// The points of a patch in parts of about `most` points, one after the other: those of a range of which `wanted` says so, each with
 /// the index of its first.
 pub(crate) fn evaluated_in_parts<T: Scalar>(
     surface: &SurfaceRef<T>,

@@ -14,7 +14,7 @@ const IN_PLANE: f64 = 1e-9;
 /// determine the outside.
 const NEARLY_FLAT: f64 = 0.05;
 
-/// The same of closed bodies, whose cones are their volume: a thin shell has little of it, but has one.
+/// Relative volume of closed bodies, whose cones are their volume: a thin shell has little of it, but has one.
 const NO_VOLUME: f64 = 1e-9;
 
 /// A panel edge with one panel: the patch and the indices of both ends in its grid.

@@ -354,7 +354,7 @@ impl Panelling {
         Some(points)
     }
 
-    /// The same at the state that the panelling was made of.
+    /// The bodies' own vertices at the state that the panelling was made of.
     fn own_body_points(&self) -> Vec<Vec3> {
         self.bodies.iter().flat_map(|b| b.own_points(&b.facets, &self.points)).collect()
     }

@@ -85,7 +85,7 @@ impl Panelling {
         owned
     }
 
-    /// The same with all vertices in one recording: bodies of triangles take points of the patches.
+    /// [`Self::pull`] with all vertices in one recording: bodies of triangles take points of the patches.
     fn pull_at_once(
         &self,
         graph: &Graph<Rev>,

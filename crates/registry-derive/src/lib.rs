@@ -143,7 +143,7 @@ struct Arguments {
     reads: Vec<Tokens>,
     /// The constants that name them in faults.
     constants: Vec<syn::Ident>,
-    /// Those whose count or range may only be known when an object was evaluated.
+    /// Fields whose count or range may only be known when an object was evaluated.
     checks: Vec<usize>,
 }
 

@@ -83,7 +83,7 @@ pub trait TriangulatedBorder<T: Real>: Send + Sync {
     /// The measures of the part of the surface itself, which its triangles only come near.
     fn measures(&self) -> Option<SheetMeasures<T>>;
 
-    /// The same with triangles as near to the surface as this, in place of stated divisions.
+    /// The border with triangles as near to the surface as this, in place of stated divisions.
     ///
     /// # Errors
     /// When that takes too many triangles.

@@ -162,7 +162,7 @@ impl<T: Real> FoilArguments<T> {
         Ok((Profile { section, layout, offset }, closed, nesting))
     }
 
-    /// The same with numbers that may depend on a parameter, for lofts; a foil whose points all
+    /// The profile of numbers that may depend on a parameter, for lofts; a foil whose points all
     /// coincide has zero size.
     pub fn lifted<J: Jet<T>>(&self, points: &[Vec3<J>]) -> Result<Profile<J>, CallError> {
         let fixed = |v: Vec3<T>| v.map(J::fixed);

@@ -259,7 +259,7 @@ pub enum Ask {
     Reorder {
         /// The object.
         name: String,
-        /// The other one.
+        /// The object beside which it comes.
         beside: String,
         /// True for behind it.
         #[serde(default)]

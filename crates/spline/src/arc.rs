@@ -49,7 +49,7 @@ enum ArcForm<T> {
     /// About `centre` from the radius `spoke`; `turn` is perpendicular to it and as long as the
     /// angle times the radius: C = M + spoke cos(a t) + (turn/a) sin(a t).
     Sector { centre: Vec3<T>, spoke: Vec3<T>, turn: Vec3<T>, angle_sq: T },
-    /// The same over `quarters` right angles, `side` being perpendicular to `spoke` and as long.
+    /// About `centre` over `quarters` right angles, `side` being perpendicular to `spoke` and as long.
     Quarters { centre: Vec3<T>, spoke: Vec3<T>, side: Vec3<T>, quarters: f64 },
 }
 

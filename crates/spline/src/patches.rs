@@ -168,7 +168,7 @@ fn horner<T: Real, const LANES: usize>(
     sum
 }
 
-/// The same with its derivatives by s and by t.
+/// The sum of c_ab s^a t^b with its derivatives by s and by t.
 #[inline(always)]
 fn horner_first<T: Real, const LANES: usize>(
     patch: &[Coefficient<T>],

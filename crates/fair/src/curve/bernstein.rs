@@ -73,7 +73,7 @@ impl SignedQuantity {
         }
     }
 
-    /// The same with their derivatives by the points' coordinates, as `[point][coordinate]`.
+    /// The Bernstein coefficients with their derivatives by the points' coordinates, as `[point][coordinate]`.
     pub fn linear(self, bezier: &[P<f64>]) -> Vec<(f64, Vec<P<f64>>)> {
         let n = bezier.len();
         let mut out: Vec<(f64, Vec<P<f64>>)> =

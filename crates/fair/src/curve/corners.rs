@@ -84,7 +84,7 @@ pub fn interpolate_with_corners<T: Real>(
     Ok(sharp)
 }
 
-/// The same for open curves at given parameters; `breaks` ascend.
+/// The interpolating spline of an open curve at given parameters; `breaks` ascend.
 fn open<T: Real>(
     degree: usize,
     points: &[Vec3<T>],

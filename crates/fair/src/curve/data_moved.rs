@@ -67,7 +67,7 @@ pub fn fair_data_with<T: Real>(
     fair_data_under(data, options, DataNumbers { points, tolerances, at, demands: &[] })
 }
 
-/// The same with the demands behind the conditions: derivatives include those of joins.
+/// `fair_data` with derivatives and the demands behind the conditions: derivatives include those of joins.
 pub(super) fn fair_data_under<T: Real>(
     data: &Data,
     options: &DataOptions,

@@ -11,7 +11,7 @@ const ROUNDING: f64 = 1e-12;
 /// Number of points beyond those that determine a curve, for a coincidence to be excluded.
 const SPARE: usize = 4;
 
-/// The same for one of many lines, all of which must be exact.
+/// Number of spare points of one of many lines, all of which must be exact.
 const SPARE_EACH: usize = 1;
 
 /// True if the points are in order on a line, a circle, another conic, a plane cubic or a helix.

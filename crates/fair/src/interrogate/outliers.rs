@@ -138,7 +138,7 @@ const FREEDOM: f64 = (2 * SIDE - 4) as f64;
 struct NeighbourFit {
     /// Across the curve, over the root of 1 + leverage.
     off: f64,
-    /// The same as it is.
+    /// The part across the curve, as it is.
     across: Vec3<f64>,
     expected: Vec3<f64>,
     leverage: f64,

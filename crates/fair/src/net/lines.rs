@@ -71,7 +71,7 @@ struct HeldSign {
 struct LineSigns {
     /// All of them.
     fewest: Vec<HeldSign>,
-    /// Those that have not been given up.
+    /// The signs that are still held.
     left: Vec<HeldSign>,
     /// True once the line has bent more than that.
     held: bool,

@@ -377,7 +377,7 @@ impl Network {
         Some((rows, reach))
     }
 
-    /// The same of joined surfaces; a point of several can move as far as the least of them allows.
+    /// The Bézier points of joined surfaces; a point of several can move as far as the least of them allows.
     fn patches_bezier(&self) -> Option<(SparseRows, Vec<f64>)> {
         let mut all = SparseRows::new();
         let mut reach = vec![f64::INFINITY; self.points.len()];

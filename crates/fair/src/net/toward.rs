@@ -196,7 +196,7 @@ impl Network {
         Ok((found.optimum, found.used))
     }
 
-    /// The same with the curves that bend more than their points require.
+    /// The result of a goal with the curves that bend more than their points require.
     pub(super) fn reached(
         &self,
         measure: Measure,

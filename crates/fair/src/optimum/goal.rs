@@ -19,7 +19,7 @@ pub enum Goal {
     /// tolerance, have a mean of at most this fraction of 1/3; noise that fills the tolerance
     /// evenly has a mean of 1/3.
     Budget(f64),
-    /// The same, as far as it is worth a move: data whose own curve measures less than one and a
+    /// That minimum as far as it is worth a move: data whose own curve measures less than one and a
     /// half times as much do not move at all, and from three times on they move all the way.
     /// Exact data stay. In a network whose fairest takes no more of the squares than noise has, give
     /// or take half as much again as its standard deviation, the data do not speak against that, and
@@ -228,7 +228,7 @@ pub(crate) enum Adaptation {
     None,
     /// Smaller where noise does not explain the fairest: [`tightened`].
     Surface,
-    /// The same, and the fairest itself where noise explains it: [`allowed`].
+    /// Tightened likewise, and the fairest itself where noise explains it: [`allowed`].
     Network,
 }
 

@@ -23,7 +23,7 @@ const MOST_IDLE: usize = 6;
 /// Step, relative to Newton's, that counts as no move.
 const STUCK: f64 = 1e-9;
 
-/// The same as long as the conditions are not met.
+/// Maximum number of trials as long as the conditions are not met.
 const MOST_TRIALS: usize = 12;
 
 /// Ratio of the complementarity to the certified gap below which the remaining gap is rounding.

@@ -71,7 +71,7 @@ pub(crate) const FAR: f64 = 10.0;
 /// Relative gap to which the weight of a budget is determined.
 const WEIGHED: f64 = 1e-8;
 
-/// The same that rounding may leave of very many.
+/// Relative gap that rounding may leave of very many conditions.
 const NEARLY: f64 = 1e-4;
 
 /// The frame that points move in: the directions that matter.

@@ -125,7 +125,7 @@ impl Schur {
         }
     }
 
-    /// The same for a direction of numbers of any kind, whose conditions should come to `wanted`.
+    /// The smallest change of a direction of numbers of any kind, whose conditions should come to `wanted`.
     pub fn answer<T: Real>(&self, wanted: &[T], x: &mut [T]) -> Vec<T> {
         let short = |(row, &wanted): (&Vec<f64>, &T)| {
             row.iter().zip(&*x).fold(T::zero(), |s, (a, b)| s + *b * *a) - wanted

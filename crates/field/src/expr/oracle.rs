@@ -32,7 +32,7 @@ pub trait Oracle<T: Real>: Field<T> {
         points.iter().map(|p| self.value_and_gradient(*p)).collect()
     }
 
-    /// The same with real parts only.
+    /// The function with real parts only.
     fn re(&self) -> Arc<dyn Oracle<f64>>;
 }
 

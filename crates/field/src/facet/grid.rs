@@ -41,7 +41,7 @@ impl Grid {
         Self::at(over, step, 0)
     }
 
-    /// The same at one of a few offsets.
+    /// Cells of side `step` over `over`, at one of a few offsets.
     pub(super) fn at(over: &Box3, step: f64, place: usize) -> Result<Self, FieldError> {
         let margin = MARGINS[place];
         let mut cells = [0; 3];

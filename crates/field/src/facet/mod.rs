@@ -398,7 +398,7 @@ fn own_leaves(capped: &Compiled<f64>) -> usize {
 
 /// Facets of more cells than this are not repeated with a shifted grid.
 const FEW_CELLS: usize = 60_000;
-/// The same of those for integrals, whose finer levels follow.
+/// Maximum number of cells of facets for integrals, whose finer levels follow.
 const FEW_SHARP: usize = 12_000;
 
 /// The facets with the fewest cut-off edges and cells whose triangles intersect others, among a few

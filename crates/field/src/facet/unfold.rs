@@ -23,7 +23,7 @@ const STEPS: usize = 6;
 const ROUNDS: usize = 4;
 /// Number of rings around intersections that are tested.
 pub(super) const RINGS: usize = 3;
-/// The same for repeated changes.
+/// Number of rings around repeated changes that are tested.
 const KNOWN_RINGS: usize = 1;
 
 pub(super) type Corners = [u32; 3];

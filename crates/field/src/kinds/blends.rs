@@ -29,7 +29,7 @@ pub struct Liming<T: Real> {
     l2: NamedField<T>,
     /// The rail, or the first of the two other bodies.
     l3: NamedField<T>,
-    /// The other of them.
+    /// The second of the two other bodies.
     #[field(default)]
     l4: Option<NamedField<T>>,
     /// Shape between 0 (near the rail) and 1 (near the bodies).

@@ -135,7 +135,7 @@ impl UniqueNames {
 }
 
 impl Pieces {
-    /// The same with fewer triangles of its solids; see [`Facets::simplified`].
+    /// The body with fewer triangles of its solids; see [`Facets::simplified`].
     ///
     /// # Errors
     /// An accuracy that is not above zero.

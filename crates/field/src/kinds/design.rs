@@ -234,7 +234,7 @@ impl<T: Real> Build<T> for ConvexHull<T> {
 pub struct MinkowskiSum<T: Real> {
     /// A set.
     a: SetArgument<T>,
-    /// The other.
+    /// The other set.
     b: SetArgument<T>,
 }
 
@@ -256,7 +256,7 @@ impl<T: Real> Build<T> for MinkowskiSum<T> {
 pub struct FilletSets<T: Real> {
     /// A set, of planes, balls, cylinders, cones and tori.
     a: SetArgument<T>,
-    /// The other.
+    /// The other set.
     b: SetArgument<T>,
     /// Setback of the blend on both.
     #[field(min = 0)]

@@ -544,7 +544,7 @@ impl<T: Real> Build<T> for FirstHit<T> {
 pub struct Distance<T: Real> {
     /// A set.
     a: SetArgument<T>,
-    /// The other.
+    /// The other set.
     b: SetArgument<T>,
     /// Low corner of the box.
     #[field(default)]

@@ -68,7 +68,7 @@ impl<T: Real> Hyperbolic<T> {
         Self { heights, sides: [MarchBoundary::Free; 4], smoothing: 1.0, stop: Stop::default() }
     }
 
-    /// The same with sides.
+    /// The settings with these sides.
     pub fn with_sides(mut self, sides: [MarchBoundary; 4]) -> Self {
         self.sides = sides;
         self

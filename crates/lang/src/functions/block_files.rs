@@ -30,9 +30,9 @@ pub(crate) struct Connected {
     pub partners: Vec<PeriodicPartner>,
     /// Parts of faces without a neighbour or a name.
     pub nameless: Vec<FacePart>,
-    /// Those that are one face with others, of finer or coarser cells.
+    /// Parts that are one face with others, of finer or coarser cells.
     pub hanging: Vec<HangingJoint>,
-    /// Those that lie on others but are not joined.
+    /// Parts that lie on others but are not joined.
     pub abutting: Vec<AbuttingFaces>,
 }
 

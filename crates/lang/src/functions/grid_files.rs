@@ -79,7 +79,7 @@ impl TakenIn {
         Ok(())
     }
 
-    /// The same with a text for each item of a list.
+    /// Names the boundaries of the list before, a text for each item.
     fn name_each<T: Real>(&mut self, texts: &[Value<T>]) -> Result<(), Diagnostic> {
         if texts.len() != self.last.len() {
             let (n, m) = (self.last.len(), texts.len());

@@ -116,7 +116,7 @@ struct Correspondence {
     along: [(usize, bool); 2],
     /// Cells of the first part along the axes of the second.
     cells: [usize; 2],
-    /// Those of the second.
+    /// Cells of the second part along its axes.
     theirs: [usize; 2],
 }
 

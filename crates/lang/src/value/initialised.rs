@@ -68,7 +68,7 @@ impl Known {
         }
     }
 
-    /// The same for an array of a shape, with the vector at a position in memory.
+    /// Notes a section of an array of a shape, with the vector at a position in memory.
     pub fn give_section(
         &mut self,
         section: Option<ArraySection>,

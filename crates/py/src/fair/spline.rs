@@ -273,7 +273,7 @@ impl Spline {
         self.reported(py, &samples)
     }
 
-    /// The same on every span, ends of spans from both sides.
+    /// Position, derivatives, curvature and torsion on every span, ends of spans from both sides.
     fn spans<'py>(&self, py: Python<'py>, per_span: usize) -> PyResult<Bound<'py, PyDict>> {
         let samples = py.detach(|| self.samples(per_span));
         self.reported(py, &samples)
@@ -422,7 +422,7 @@ pub fn is_exact(
     Ok(moldloft::fair::is_exact(&vectors(&points)?, &breaks, closed))
 }
 
-/// The same of all lines through numbered points, each its points and whether it is closed.
+/// True for each of the lines through numbered points, each its points and whether it is closed.
 #[pyfunction]
 pub fn are_exact(
     points: PyReadonlyArray2<'_, f64>,

@@ -154,7 +154,7 @@ impl PyFacets {
         Ok(dict)
     }
 
-    /// The same with fewer triangles.
+    /// The facets with fewer triangles.
     fn simplified(&self, py: Python<'_>, accuracy: f64) -> PyResult<Self> {
         let pieces = self.pieces.clone();
         let simple = unlocked(py, move || pieces.simplified(accuracy))?.map_err(plain_error)?;

@@ -44,7 +44,7 @@ impl<T: Real> Field<f64> for PlainField<'_, T> {
 }
 
 impl<T: Real> LevelOf<T> {
-    /// The same in plain numbers; `field` holds a plain field.
+    /// The level in plain numbers; `field` holds a plain field.
     pub fn plain<'a>(&self, field: &'a Option<PlainField<'a, T>>) -> moldloft_locate::Level<'a> {
         match self {
             LevelOf::Field(_) => match field {

@@ -106,7 +106,7 @@ impl SketchSession {
         self.make_with(feature, Vec::new(), target, refused)
     }
 
-    /// The same with numbers of the feature itself.
+    /// Replaces `target` by an object of a feature with numbers of its own.
     pub(super) fn make_with(
         &mut self,
         feature: Feature,

@@ -18,7 +18,7 @@ impl SessionState {
         self.others_with(object, &BTreeMap::new())
     }
 
-    /// The same with some of these numbers replaced.
+    /// Numbers of other objects, some of them replaced.
     pub fn others_with<T: Real>(
         &self,
         object: &SketchObject,

@@ -755,7 +755,7 @@ impl SketchSession {
         self.worked_with(object, self.state.others(object))
     }
 
-    /// The same, with the numbers of other objects as they were or are.
+    /// An object with its layout and body, with the numbers of other objects as they were or are.
     pub(super) fn worked_with(
         &mut self,
         object: &Arc<SketchObject>,

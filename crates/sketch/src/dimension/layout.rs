@@ -18,14 +18,14 @@ use std::collections::{BTreeMap, VecDeque};
 /// A dimension that is not satisfied.
 #[derive(Clone, Debug, PartialEq)]
 pub enum DimensionFault {
-    /// The others determine it already, consistently.
+    /// Other dimensions determine it, consistently.
     Redundant {
         /// Its name.
         name: String,
         /// The dimensions that determine it.
         path: Vec<String>,
     },
-    /// The others determine it already, with another value.
+    /// Other dimensions determine it, with another value.
     Contradictory {
         /// Its name.
         name: String,

@@ -100,7 +100,7 @@ pub struct Align {
     pub axis: CoordinateAxis,
     /// One point.
     pub p: PointId,
-    /// The other.
+    /// The other point.
     pub q: PointId,
 }
 

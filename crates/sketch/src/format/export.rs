@@ -89,7 +89,7 @@ pub fn gltf(mesh: &IndexedTriangles, name: &str, metres: f64) -> String {
     )
 }
 
-/// The same in the binary form: a header, the text, the buffer (glTF 2.0, section 4.4).
+/// glTF 2.0 in the binary form: a header, the text, the buffer (glTF 2.0, section 4.4).
 pub fn glb(mesh: &IndexedTriangles, name: &str, metres: f64) -> Vec<u8> {
     let bytes = buffer(mesh);
     let length = Json::map([("byteLength", Json::from(bytes.len()))]);

@@ -94,7 +94,7 @@ pub fn body<T: Real>(
     Ok(made)
 }
 
-/// The same, with the bodies that are kept.
+/// The valid body of an object, with the bodies that are kept.
 pub(crate) fn body_kept(
     object: &Arc<SketchObject>,
     planes: &Planes,

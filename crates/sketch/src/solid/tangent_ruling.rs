@@ -93,7 +93,7 @@ impl TangentRuling {
 }
 
 impl ChordEnd {
-    /// The same on an edge that runs the other way.
+    /// The end on an edge that runs the other way.
     pub(super) fn turned(self) -> ChordEnd {
         ChordEnd { share: 1.0 - self.share, ..self }
     }

@@ -155,7 +155,7 @@ impl<T: Real> Blended<T> {
         coefficients
     }
 
-    /// The same with its sums precomputed, for sections that are evaluated at many parameters.
+    /// The mean line with its sums precomputed, for sections that are evaluated at many parameters.
     pub fn settled(mut self) -> Self {
         self.pieces = (0..STEPS).map(|k| self.piece(k)).collect();
         self

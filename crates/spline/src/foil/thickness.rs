@@ -234,7 +234,7 @@ impl<T: Real> Thickness<T> {
         }
     }
 
-    /// The same form, prepared for evaluation at many parameters.
+    /// The form, prepared for evaluation at many parameters.
     pub fn settled(self) -> Self {
         match self {
             Thickness::Family(form) => Thickness::Family(form.settled()),
@@ -260,7 +260,7 @@ impl<T: Real> Thickness<T> {
         }
     }
 
-    /// The same without the parameters at which only third derivatives jump.
+    /// [`Self::breaks`] without the parameters at which only third derivatives jump.
     pub fn second_order_breaks(&self) -> Vec<f64> {
         match self {
             Thickness::Joined { at, .. } => vec![at.re().sqrt()],

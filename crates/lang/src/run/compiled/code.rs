@@ -44,7 +44,7 @@ pub(super) const OF_FILE: u16 = 1 << 15;
 pub(super) enum ScalarOp {
     /// A statement begins; it is counted and noted as executed.
     Step(u16),
-    /// The same, and the next operation does it for the statement that follows.
+    /// A statement begins, and the next operation does it for the statement that follows.
     Steps(u16),
     Copy {
         to: u16,
@@ -450,7 +450,7 @@ pub(super) enum CodeNote {
     Finite(&'static str, Span),
     /// The interpreter evaluates the expression, which gives the error.
     Expression(ExprId),
-    /// The same for the target of an assignment.
+    /// The interpreter evaluates the target of an assignment, which gives the error.
     Target(ExprId),
     /// The interpreter executes the assignment, which may be no fault.
     Assignment(StmtId),
@@ -547,7 +547,7 @@ pub(super) struct CodeUnit<T: Real> {
     pub inner: Vec<(u16, u16, CodeNote)>,
     /// Positions of declarations, with types.
     pub origins: Vec<(Span, Type)>,
-    /// Those of arrays that take any shape.
+    /// Declarations of arrays that take any shape.
     pub unfixed: Vec<u16>,
     /// The statements, each with its module: a unit may contain inlined code of other routines.
     pub statements: Vec<(usize, StmtId)>,

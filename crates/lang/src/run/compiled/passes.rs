@@ -87,7 +87,7 @@ impl<T: Real> ArrayRegister<T> {
         }
     }
 
-    /// The same to write: nothing else holds them then.
+    /// Its rows to write: nothing else holds them then.
     fn rows_mut(&mut self) -> &mut [Vec<T>] {
         self.own();
         match &mut self.items {

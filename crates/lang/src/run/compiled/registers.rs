@@ -181,7 +181,7 @@ impl<T: Real> ArrayRegister<T> {
         (value, std::mem::take(&mut self.known))
     }
 
-    /// The same for a routine, which gets it by value.
+    /// The array as the argument of a routine, which gets it by value.
     pub fn passed(&mut self, mark: u32) -> Self {
         let shape = self.shape;
         self.items = match std::mem::replace(&mut self.items, ArrayItems::Nothing) {
