@@ -1,4 +1,4 @@
-// The requests of the engine by their kinds, and facts of its replies. Made by `crates/session/tests/it/protocol.rs`.
+// The requests of the engine by their kinds, and facts of its replies. Made by `crates/registry-derive/tests/protocol.rs`.
 
 /** Options of a number that may change. */
 export interface Adjusted {

@@ -3,7 +3,6 @@
 
 mod drags;
 mod overlays;
-mod protocol;
 mod scenes;
 mod statements;
 mod texts_beside;

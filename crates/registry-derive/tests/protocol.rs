@@ -1,7 +1,7 @@
 //! The page's types of requests and replies are those of the engine: `web/src/protocol.ts` is made of `src/request.rs`
-//! and `src/replies.rs`.
+//! and `src/replies.rs` of the crate `session`; it is here because this crate reads Rust.
 //!
-//! `MOLDLOFT_ACCEPT=1 cargo test -p moldloft-session` writes it.
+//! `MOLDLOFT_ACCEPT=1 cargo test -p moldloft-registry-derive` writes it.
 
 use std::fmt::Write as _;
 use std::path::Path;
@@ -9,11 +9,11 @@ use syn::{
     Attribute, Expr, Field, Fields, GenericArgument, Item, ItemEnum, Lit, Meta, PathArguments, Type,
 };
 
-const HEAD: &str = "// The requests of the engine by their kinds, and facts of its replies. Made by `crates/session/tests/it/protocol.rs`.\n";
+const HEAD: &str = "// The requests of the engine by their kinds, and facts of its replies. Made by `crates/registry-derive/tests/protocol.rs`.\n";
 
 #[test]
 fn the_page_has_the_protocol_of_the_engine() {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../session");
     let mut text = HEAD.to_string();
     for name in ["request.rs", "replies.rs"] {
         let source = std::fs::read_to_string(root.join("src").join(name)).expect("the source");
