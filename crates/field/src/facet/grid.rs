@@ -19,6 +19,8 @@ pub(crate) struct Grid {
     pub(crate) step: f64,
     /// True if some cells are longer.
     pub(super) joined: bool,
+    /// Axes along which all cells have the same length.
+    uniform: [bool; 3],
     /// Cells along each axis, whole blocks.
     pub(super) cells: [usize; 3],
     /// Distance from a surface that counts as on it.
@@ -69,7 +71,14 @@ impl Grid {
         }
         let goal = 1e-13 * over.diagonal() + 8.0 * f64::EPSILON * far;
         let line = |k: usize| (0..=cells[k]).map(|n| origin[k] + step * n as f64).collect();
-        Ok(Self { lines: [line(0), line(1), line(2)], step, joined: false, cells, goal })
+        Ok(Self {
+            lines: [line(0), line(1), line(2)],
+            step,
+            joined: false,
+            uniform: [true; 3],
+            cells,
+            goal,
+        })
     }
 
     /// The grid with one layer of cells for each prism of a set within the box `over`; the leaves of the set
@@ -90,7 +99,8 @@ impl Grid {
             while lines.len() <= count {
                 lines.push(lines[lines.len() - 1] + self.step);
             }
-            (self.lines[k], self.cells[k], self.joined) = (lines, count, true);
+            (self.lines[k], self.cells[k]) = (lines, count);
+            (self.joined, self.uniform[k]) = (true, false);
         }
         self
     }
@@ -114,9 +124,22 @@ impl Grid {
     /// Cell that contains a point.
     pub(super) fn cell_of(&self, p: Vec3) -> [usize; 3] {
         [0, 1, 2].map(|k| {
-            let before = self.lines[k].partition_point(|x| *x <= p[k]);
-            before.saturating_sub(1).min(self.cells[k] - 1)
+            let lines = &self.lines[k];
+            let at = match self.uniform[k] {
+                true => ((p[k] - lines[0]) / self.step).max(0.0) as usize,
+                false => lines.partition_point(|x| *x <= p[k]).saturating_sub(1),
+            };
+            at.min(self.cells[k] - 1)
         })
+    }
+
+    /// The box of the cells from one to another, as far as these are in the grid.
+    pub(super) fn between(&self, low: [usize; 3], high: [usize; 3]) -> Box3 {
+        let line = |k: usize, at: usize| self.lines[k][at.min(self.cells[k])];
+        Box3 {
+            low: Vec3::from([0, 1, 2].map(|k| line(k, low[k]))),
+            high: Vec3::from([0, 1, 2].map(|k| line(k, high[k] + 1))),
+        }
     }
 
     pub(super) fn cell(&self, at: [usize; 3]) -> Box3 {
