@@ -227,12 +227,15 @@ fn surface_point(
     (shown == crate::Membership::Surface).then_some(q)
 }
 
-/// A point of the zero set of `f` near `start` whose normal passes through `p`: first onto the surface, then along
-/// it towards `p` and back, by shorter steps where that leads away because the surface bends more.
+/// A point of the zero set of `f` near `start` whose normal passes through `p`: first onto the
+/// surface, then along it towards `p` and back, by shorter steps where that leads away because the
+/// surface bends more.
 fn foot(f: &Primitive, start: Vec3, p: Vec3) -> Option<Vec3> {
     /// Numbers of Newton steps, and of steps along the surface.
     const ONTO: usize = 40;
     const ALONG: usize = 60;
+    /// Relative distance of the foot at which the distance is known to rounding.
+    const NEAR_FOOT: f64 = 1e-9;
     let small = |step: f64, q: Vec3| step <= 1e-15 * (1.0 + q.norm());
     let onto = |mut q: Vec3| {
         for _ in 0..ONTO {
@@ -261,7 +264,7 @@ fn foot(f: &Primitive, start: Vec3, p: Vec3) -> Option<Vec3> {
         }
         let step = next.distance(q);
         (q, way) = (next, rest);
-        if small(step, q) {
+        if step <= NEAR_FOOT * (1.0 + q.norm()) {
             break;
         }
     }
