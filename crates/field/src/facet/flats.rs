@@ -12,7 +12,8 @@ use std::collections::BTreeMap;
 
 /// Relative difference of areas within which an outline is filled.
 const SAME_AREA: f64 = 1e-9;
-/// Distance of a vertex from the line between its neighbours, relative to that line, on a straight edge.
+/// Distance of a vertex from the line between its neighbours, relative to that line, on a straight
+/// edge.
 const STRAIGHT: f64 = 1e-9;
 
 type Corners = [u32; 3];

@@ -1,8 +1,9 @@
 //! The grid over a box: cubic cells, joined along an axis where the set is a prism.
 //!
-//! Between two planes across an axis, and wherever else the reduced formula of the whole cross-section does not contain the
-//! axis's coordinate, the set is a prism. One layer of cells shows it, however long it is and however thin: the
-//! vertices are on the outline, and the triangles are as long as the prism.
+//! Between two planes across an axis, and wherever else the reduced formula of the whole
+//! cross-section does not contain the axis's coordinate, the set is a prism. One layer of cells
+//! shows it, however long it is and however thin: the vertices are on the outline, and the
+//! triangles are as long as the prism.
 
 use super::types::SIDE;
 use crate::FieldError;
@@ -81,8 +82,8 @@ impl Grid {
         })
     }
 
-    /// The grid with one layer of cells for each prism of a set within the box `over`; the leaves of the set
-    /// itself precede those of the box.
+    /// The grid with one layer of cells for each prism of a set within the box `over`; the leaves
+    /// of the set itself precede those of the box.
     pub(super) fn fitted(mut self, tape: &ExprTape<f64>, own_leaves: usize, over: &Box3) -> Self {
         let depends = dependence(tape);
         let mut room = Vec::new();

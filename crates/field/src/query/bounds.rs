@@ -92,8 +92,8 @@ fn within(
     Ok(Some(Box3 { low: Vec3::from(low), high: Vec3::from(high) }))
 }
 
-/// Half side of the smallest cube about the origin, of halves of `world` and not below 1, outside of which ranges over
-/// six slabs prove that there is nothing; and the tape in it.
+/// Half side of the smallest cube about the origin, of halves of `world` and not below 1, outside
+/// of which ranges over six slabs prove that there is nothing; and the tape in it.
 fn about_origin(tape: &Arc<ExprTape<f64>>, world: f64) -> (f64, Arc<ExprTape<f64>>) {
     let mut room = Vec::new();
     let mut tape = tape.clone();
@@ -118,7 +118,8 @@ fn about_origin(tape: &Arc<ExprTape<f64>>, world: f64) -> (f64, Arc<ExprTape<f64
     (size, tape)
 }
 
-/// Upper bound of a coordinate of the set within a cube of half side `start`; `None` if it is empty.
+/// Upper bound of a coordinate of the set within a cube of half side `start`; `None` if it is
+/// empty.
 fn farthest(
     tape: &Arc<ExprTape<f64>>,
     axis: usize,

@@ -1,5 +1,6 @@
-//! Prisms: one layer of cells between the planes across an axis, however thin or long, beside closed forms and
-//! beside the same bodies turned out of the grid. `MOLDLOFT_SOAK` makes the number of random bodies 300.
+//! Prisms: one layer of cells between the planes across an axis, however thin or long, beside
+//! closed forms and beside the same bodies turned out of the grid. `MOLDLOFT_SOAK` makes the number
+//! of random bodies 300.
 
 use crate::common::{at_depth, axis, facets, sound, v};
 use moldloft_field::{
