@@ -166,7 +166,15 @@ impl<T: Real> Spanning<T> {
             outermost(&there.map(|(_, b)| *b).collect::<Vec<_>>())
         };
         let (bottom, top) = (at(low), at(high));
-        let level = |h: &f64| (h - low).abs() <= slack || (h - high).abs() <= slack;
+        // Discs between the ends, as in sums of prisms, add nothing within the outline of an end.
+        let level = |(h, d): (&f64, &HullBall<T>)| {
+            let ends = (h - low).abs() <= slack || (h - high).abs() <= slack;
+            let within = |t: &HullBall<T>| {
+                let to = d.centre.re() - t.centre.re();
+                (to - n * n.dot(to)).norm() + d.radius.re() <= t.radius.re() + slack
+            };
+            ends || top.iter().any(within)
+        };
         let beside = |b: &HullBall<T>| {
             let flat = |v: Vec3| v - n * n.dot(v);
             top.iter().any(|t| {
@@ -174,7 +182,10 @@ impl<T: Real> Spanning<T> {
                     && (t.radius.re() - b.radius.re()).abs() <= slack
             })
         };
-        if !heights.iter().all(level) || bottom.len() != top.len() || !bottom.iter().all(beside) {
+        if !heights.iter().zip(&all).all(level)
+            || bottom.len() != top.len()
+            || !bottom.iter().all(beside)
+        {
             return no_hull(
                 "cylinders, cones or prisms that do not lie between the same two planes",
             );

@@ -98,7 +98,7 @@ pub(super) fn compute(
     // Primitives from outside know too little of themselves.
     if !tape.has_users() {
         let corner = |c: [usize; 3]| corner(c).to_array();
-        let quiet = Quiet { tape, values: &*values, corner: &corner, step: grid.step };
+        let quiet = Quiet { tape, values: &*values, corner: &corner };
         block.unresolved = quiet.unresolved(taylor);
     }
     if crossings.is_empty() {
@@ -125,8 +125,8 @@ pub(super) fn compute(
                     // The same middle, bit for bit, from both cells of the face.
                     let (axis, mut at) = (face / 2, cell);
                     at[axis] += face % 2;
-                    let half = |k: usize| if k == axis { 0.0 } else { 0.5 * grid.step };
-                    let middle = corner(at) + Vec3::new(half(0), half(1), half(2));
+                    let across = [0, 1, 2].map(|k| at[k] + usize::from(k != axis));
+                    let middle = (corner(at) + corner(across)) * 0.5;
                     let solid = tape.eval::<f64>(&middle, registers) <= 0.0;
                     let on = |e: usize| {
                         let start = start_corner(e);

@@ -78,11 +78,11 @@ pub(super) fn lost(facets: &Facets, accuracy: f64) -> Option<Unresolved> {
     if open.iter().map(|u| u.volume).sum::<f64>() > HELD * body {
         return largest(&every);
     }
-    let cell = facets.step.powi(3);
-    if facets.blunt.len() as f64 * cell > HELD * body {
+    let volume = |b: &Box3| (0..3).map(|k| b.high[k] - b.low[k]).product::<f64>();
+    if facets.blunt.iter().map(volume).sum::<f64>() > HELD * body {
         let place = facets.blunt[facets.blunt.len() / 2];
-        let witness = place.centre();
-        return Some(Unresolved { place, volume: cell, missed: true, witness, solid: true });
+        let (volume, witness) = (volume(&place), place.centre());
+        return Some(Unresolved { place, volume, missed: true, witness, solid: true });
     }
     let reach = accuracy.max(2.0 * facets.step);
     let positions = facets.mesh.positions();

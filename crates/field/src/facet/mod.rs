@@ -16,6 +16,7 @@ mod contacts;
 mod crossing;
 mod cut_off;
 mod divide;
+mod flats;
 mod grid;
 mod lost;
 pub(crate) mod memo;
@@ -400,6 +401,8 @@ fn own_leaves(capped: &Compiled<f64>) -> usize {
 const FEW_CELLS: usize = 60_000;
 /// Maximum number of cells of facets for integrals, whose finer levels follow.
 const FEW_SHARP: usize = 12_000;
+/// Nor those with more cut-off edges and intersections than this: at another position about as many are elsewhere.
+const FEW_AMISS: usize = 16;
 
 /// The facets with the fewest cut-off edges and cells whose triangles intersect others, among a few
 /// positions of the grid.
@@ -418,7 +421,7 @@ fn sharpest(
     };
     let few = if options.sharp { FEW_SHARP } else { FEW_CELLS };
     for place in 1..grid::PLACES {
-        if cost(&best) == 0 || best.cells > few {
+        if cost(&best) == 0 || cost(&best) > FEW_AMISS || best.cells > few {
             break;
         }
         let grid = Grid::at(over, step, place)?;
@@ -451,11 +454,12 @@ fn on_grid(
 ) -> Result<Facets, FieldError> {
     let step = grid.step;
     let compiled = capped(set, over)?.compiled();
+    let own_leaves = own_leaves(&compiled);
+    let grid = grid.fitted(&compiled.tape, own_leaves, over);
     let reuse = before
         .filter(|b| b.memory.grid == grid)
         .map(|b| Reuse { blocks: b.memory.blocks.iter().map(|pair| (pair.1.at, pair)).collect() });
     let divided = divide::divide(&grid, &compiled.tape, &compiled.leaves, options, reuse.as_ref())?;
-    let own_leaves = own_leaves(&compiled);
     let leaves = compiled.leaves;
     let mut made = remove_intersections::assembled(&grid, &leaves, &divided.blocks, options.sharp);
     let (shortest, slack) = (0.2 * step, cut_off::NEAR * step);
@@ -496,6 +500,9 @@ fn on_grid(
             shells::remove_flat(&mut made, step);
             cut_off = amiss(&made);
         }
+    }
+    if grid.joined && !options.sharp {
+        flats::merge(&mut made, &leaves);
     }
     let open = divided.blocks.iter().flat_map(|b| b.1.unresolved.iter().copied()).collect();
     let unresolved = unresolved::not_shown(open, &made.positions, &made.triangles, step);

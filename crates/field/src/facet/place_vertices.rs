@@ -128,7 +128,7 @@ impl VertexPlacer<'_> {
 
     /// True when a point is so far from one of the surfaces that this must be reported.
     fn away(&mut self, p: Vec3, surfaces: &[u32]) -> bool {
-        let slack = MIN_FEATURE * (self.cell.high.x - self.cell.low.x);
+        let slack = MIN_FEATURE * shortest(self.cell);
         surfaces.iter().any(|&s| {
             let g = self.solver.gradient(self.leaves[s as usize].primitive.tape(), p);
             let near = g.value.abs() <= slack * g.slope.norm();
@@ -290,7 +290,7 @@ impl VertexPlacer<'_> {
             }
             normals.push(slope / size);
         }
-        let reach = ASIDE * (self.cell.high.x - self.cell.low.x);
+        let reach = ASIDE * shortest(self.cell);
         for (k, &own) in surfaces.iter().enumerate() {
             let mut lines: SmallVec<[Vec3; 2]> = SmallVec::new();
             for (_, n) in normals.iter().enumerate().filter(|(j, _)| *j != k) {
@@ -323,6 +323,10 @@ impl VertexPlacer<'_> {
         }
         found
     }
+}
+
+fn shortest(cell: &Box3) -> f64 {
+    (0..3).map(|k| cell.high[k] - cell.low[k]).fold(f64::INFINITY, f64::min)
 }
 
 /// The primitives that crossings show, those with the most crossings first.

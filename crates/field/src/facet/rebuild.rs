@@ -84,7 +84,6 @@ pub(super) fn rebuild(
             budget.poll()?;
             if work.group(&group, reach, step).is_some() {
                 done.extend(group);
-                work.index();
                 break;
             }
         }
@@ -116,14 +115,28 @@ fn groups(cells: &[[usize; 3]]) -> Vec<Vec<[usize; 3]>> {
 
 impl Rebuilder<'_> {
     fn index(&mut self) {
-        self.left.clear();
-        self.round.clear();
         self.round.resize(self.made.positions.len(), Vec::new());
-        for (t, (_, c)) in self.made.triangles.iter().enumerate() {
-            for k in 0..3 {
-                self.left.insert((c[k], c[(k + 1) % 3]), t as u32);
-                self.round[c[k] as usize].push(t as u32);
+        for t in 0..self.made.triangles.len() as u32 {
+            self.file(t);
+        }
+    }
+
+    fn file(&mut self, t: u32) {
+        let c = self.made.triangles[t as usize].1;
+        for k in 0..3 {
+            self.left.insert((c[k], c[(k + 1) % 3]), t);
+            self.round[c[k] as usize].push(t);
+        }
+    }
+
+    /// Takes a triangle with those corners out of the index.
+    fn unfile(&mut self, t: u32, c: Corners) {
+        for k in 0..3 {
+            let side = (c[k], c[(k + 1) % 3]);
+            if self.left.get(&side) == Some(&t) {
+                self.left.remove(&side);
             }
+            self.round[c[k] as usize].retain(|x| *x != t);
         }
     }
 
@@ -176,7 +189,7 @@ impl Rebuilder<'_> {
         let old: Vec<(u32, Corners)> =
             region.iter().map(|t| self.made.triangles[*t as usize]).collect();
         let made = self.fill(rim, &mut tracer, number, &inner);
-        let taken = made.is_some_and(|new| self.take(&region, new, vertices, &mut tracer));
+        let taken = made.is_some_and(|new| self.take(&region, &old, new, vertices, &mut tracer));
         if !taken {
             self.made.positions.truncate(vertices);
             self.made.surfaces.truncate(vertices);
@@ -201,8 +214,11 @@ impl Rebuilder<'_> {
                 high[k] = high[k].max(g[k] + reach);
             }
         }
-        let within = |c: [usize; 3]| (0..3).all(|k| low[k] <= c[k] && c[k] <= high[k]) && near(c);
-        let of_vertex: Vec<bool> = self.made.positions.iter().map(|p| within(cell(*p))).collect();
+        let bounds = self.grid.between(low, high);
+        let within = |p: Vec3| {
+            (0..3).all(|k| bounds.low[k] <= p[k] && p[k] <= bounds.high[k]) && near(cell(p))
+        };
+        let of_vertex: Vec<bool> = self.made.positions.iter().map(|p| within(*p)).collect();
         let bad: FxHashSet<u32> = self
             .made
             .blunt
@@ -214,7 +230,7 @@ impl Rebuilder<'_> {
             .filter(|&t| {
                 let c = self.made.triangles[t as usize].1;
                 let middle = (self.at(c[0]) + self.at(c[1]) + self.at(c[2])) / 3.0;
-                c.iter().any(|v| of_vertex[*v as usize] || bad.contains(v)) || within(cell(middle))
+                c.iter().any(|v| of_vertex[*v as usize] || bad.contains(v)) || within(middle)
             })
             .collect()
     }
@@ -478,6 +494,7 @@ impl Rebuilder<'_> {
     fn take(
         &mut self,
         region: &[u32],
+        old: &[(u32, Corners)],
         new: Vec<(u32, Corners)>,
         vertices: usize,
         tracer: &mut Tracer,
@@ -524,18 +541,31 @@ impl Rebuilder<'_> {
         }
         let rest: FxHashSet<usize> = slots.collect();
         let mut flagged = vec![false; self.made.triangles.len()];
-        places.into_iter().for_each(|p| flagged[p] = true);
+        places.iter().for_each(|p| flagged[*p] = true);
         let triangles = &self.made.triangles;
         let corners = |f: usize| triangles[f].1;
         let cut = crossings(&self.made.positions, triangles.len(), corners, Some(&flagged));
         if cut.iter().any(|pair| pair.iter().all(|f| !rest.contains(f))) {
             return false;
         }
-        let mut k = 0;
-        self.made.triangles.retain(|_| {
-            k += 1;
-            !rest.contains(&(k - 1))
-        });
+        for (t, (_, corners)) in region.iter().zip(old) {
+            self.unfile(*t, *corners);
+        }
+        self.round.resize(self.made.positions.len(), Vec::new());
+        places.into_iter().for_each(|p| self.file(p as u32));
+        // The last triangles take the numbers that are free.
+        let mut rest: Vec<usize> = rest.into_iter().collect();
+        rest.sort_unstable();
+        for free in rest.into_iter().rev() {
+            let last = self.made.triangles.len() - 1;
+            if free != last {
+                self.unfile(last as u32, self.made.triangles[last].1);
+            }
+            self.made.triangles.swap_remove(free);
+            if free != last {
+                self.file(free as u32);
+            }
+        }
         let known: FxHashSet<u32> = self.made.doubtful.iter().map(|d| d.0).collect();
         let touched =
             new.iter().flat_map(|t| t.1).chain(vertices as u32..self.made.positions.len() as u32);

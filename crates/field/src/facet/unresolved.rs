@@ -39,23 +39,26 @@ fn joins(tape: &ExprTape<f64>) -> (bool, bool) {
 }
 
 /// Maximum deviation of a leaf from the interpolated values at the corners of a cell, from second
-/// derivatives over the whole block: the error of multilinear interpolation.
+/// derivatives over the whole block: the error of multilinear interpolation in cells of the widths `cell`.
 fn interpolation_error(
     tape: &ExprTape<f64>,
     sides: &[Interval; 3],
-    step: f64,
+    cell: [f64; 3],
     forms: &mut Vec<HessianRange>,
 ) -> f64 {
     tape.eval::<HessianRange>(sides, forms);
     let mut most = 0.0f64;
     for (form, leaf) in forms.iter().zip(&tape.leaf) {
         if *leaf != NO_LEAF {
-            let sum: f64 = (0..3).map(|k| form.second[k].magnitude()).sum();
-            let error = 0.125 * step * step * sum;
+            let bend = |k: usize| match form.second[k].magnitude() {
+                0.0 => 0.0,
+                most => cell[k] * cell[k] * most,
+            };
+            let error = 0.125 * (bend(0) + bend(1) + bend(2));
             most = if error.is_finite() { most.max(error) } else { f64::INFINITY };
         }
     }
-    most * (1.0 + 1e-12)
+    most * (1.0 + 1e-9)
 }
 
 /// A block of cells with the values at their corners.
@@ -64,7 +67,6 @@ pub(super) struct Quiet<'a> {
     pub values: &'a [f64],
     /// The position of a corner of the block.
     pub corner: &'a dyn Fn([usize; 3]) -> [f64; 3],
-    pub step: f64,
 }
 
 impl Quiet<'_> {
@@ -91,6 +93,14 @@ impl Quiet<'_> {
         [0, 1, 2].map(|k| Interval { low: a[k], high: b[k] })
     }
 
+    /// The largest width of the block's cells along each axis.
+    fn widest(&self) -> [f64; 3] {
+        let side =
+            |k: usize, n: usize| (self.corner)([0, 1, 2].map(|i| if i == k { n } else { 0 }))[k];
+        let width = |k: usize| (0..SIDE).map(|n| side(k, n + 1) - side(k, n)).fold(0.0, f64::max);
+        [width(0), width(1), width(2)]
+    }
+
     /// The cells, or parts of them, that stay open.
     pub fn unresolved(&self, room: &mut TaylorRoom) -> Vec<Unresolved> {
         let (unions, common) = joins(self.tape);
@@ -101,7 +111,7 @@ impl Quiet<'_> {
         // is solid.
         let error = match unions && common {
             true => f64::INFINITY,
-            false => interpolation_error(self.tape, &whole, self.step, &mut work.room.forms),
+            false => interpolation_error(self.tape, &whole, self.widest(), &mut work.room.forms),
         };
         let sure = |least: f64| {
             let covered = if least > 0.0 { !common } else { !unions };

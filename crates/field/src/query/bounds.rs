@@ -80,9 +80,10 @@ fn within(
     world: f64,
 ) -> Result<Option<Box3>, FieldError> {
     let (mut low, mut high) = ([0.0; 3], [0.0; 3]);
+    let (start, tape) = about_origin(tape, world);
     for axis in 0..3 {
         for (sign, end) in [(1.0, &mut high), (-1.0, &mut low)] {
-            match farthest(tape, axis, sign, accuracy, world)? {
+            match farthest(&tape, axis, sign, accuracy, [start, world])? {
                 Some(reach) => end[axis] = sign * reach,
                 None => return Ok(None),
             }
@@ -91,17 +92,44 @@ fn within(
     Ok(Some(Box3 { low: Vec3::from(low), high: Vec3::from(high) }))
 }
 
-/// Upper bound of a coordinate of the set; `None` if it is empty.
+/// Half side of the smallest cube about the origin, of halves of `world` and not below 1, outside
+/// of which ranges over six slabs prove that there is nothing; and the tape in it.
+fn about_origin(tape: &Arc<ExprTape<f64>>, world: f64) -> (f64, Arc<ExprTape<f64>>) {
+    let mut room = Vec::new();
+    let mut tape = tape.clone();
+    let mut size = world;
+    while size > 1.0 {
+        let half = 0.5 * size;
+        let empty = (0..6).all(|k| {
+            let mut slab = [Interval::new(-size, size); 3];
+            slab[k / 2] = match k % 2 {
+                0 => Interval::new(-size, -half),
+                _ => Interval::new(half, size),
+            };
+            tape.range(&slab, &mut room).low > 0.0
+        });
+        if !empty {
+            break;
+        }
+        size = half;
+        tape.range(&[Interval::new(-size, size); 3], &mut room);
+        tape = tape.pruned(&room).map_or(tape, Arc::new);
+    }
+    (size, tape)
+}
+
+/// Upper bound of a coordinate of the set within a cube of half side `start`; `None` if it is
+/// empty.
 fn farthest(
     tape: &Arc<ExprTape<f64>>,
     axis: usize,
     sign: f64,
     accuracy: f64,
-    world: f64,
+    [start, world]: [f64; 2],
 ) -> Result<Option<f64>, FieldError> {
-    let side = Interval::new(-world, world);
+    let side = Interval::new(-start, start);
     let mut heap = BinaryHeap::new();
-    heap.push(ReachBox { reach: world, depth: 0, sides: [side; 3], tape: tape.clone() });
+    heap.push(ReachBox { reach: start, depth: 0, sides: [side; 3], tape: tape.clone() });
     let mut room = Vec::new();
     let mut seen = 0;
     while let Some(ReachBox { reach, depth, sides, tape }) = heap.pop() {

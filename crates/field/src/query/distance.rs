@@ -205,6 +205,8 @@ pub fn distance(
     let mut heap = BinaryHeap::from([Pair { distance: 0.0, depth: 0, parts: [first, second] }]);
     let mut best: Option<(f64, [Vec3; 2])> = None;
     let mut seen = 0;
+    // The distance of the nearest pair of boxes that was not divided further.
+    let mut left = f64::INFINITY;
     let gauges = suggested(sets);
     let mut proved = gauges.iter().map(|g| separation(g, sets, &over)).fold(0.0, f64::max);
     while let Some(Pair { distance: apart_by, depth, parts }) = heap.pop() {
@@ -212,7 +214,8 @@ pub fn distance(
         if let Some((found, [p, q])) = best
             && (distance >= found - accuracy || seen >= MOST)
         {
-            return Ok(Some(result(&bodies, (found, [p, q]), distance, near)));
+            let at_least = distance.min(left.max(proved));
+            return Ok(Some(result(&bodies, (found, [p, q]), at_least, near)));
         }
         seen += 1;
         if seen > 10 * MOST {
@@ -228,7 +231,11 @@ pub fn distance(
                 }
             }
         }
-        if depth == DEPTH || parts.iter().all(|p| p.solid) {
+        if parts.iter().all(|p| p.solid) {
+            continue;
+        }
+        if depth == DEPTH {
+            left = left.min(apart_by);
             continue;
         }
         // The larger box that is not all solid.
@@ -251,7 +258,7 @@ pub fn distance(
             }
         }
     }
-    let at_least = |distance: f64| (distance - accuracy).max(proved);
+    let at_least = |distance: f64| (distance - accuracy).min(left).max(proved);
     Ok(best.map(|best| result(&bodies, best, at_least(best.0), near)))
 }
 

@@ -54,7 +54,7 @@ pub struct CertifiedNearest {
 }
 
 /// Boxes are halved this often along each axis, at most.
-const DEPTH: u32 = 24;
+const DEPTH: u32 = 48;
 /// The most boxes to look at.
 const MOST: usize = 100_000;
 
@@ -96,6 +96,8 @@ pub fn nearest(
     let distance = reach(&start, p);
     heap.push(Candidate { distance, sides: start, depth: 0, tape: compiled.tape.clone() });
     let mut seen = 0;
+    // The distance of the nearest box that was not divided further.
+    let mut left = f64::INFINITY;
     // From a centre of symmetry every point is nearest: boxes could not prove that in reasonable
     // time, distances do.
     let proved = super::separation::from_point(set, p);
@@ -111,7 +113,7 @@ pub fn nearest(
             return Ok(Some(CertifiedNearest {
                 point,
                 distance: found,
-                at_least: distance.min(found),
+                at_least: distance.min(left.max(proved)).min(found),
             }));
         }
         seen += 1;
@@ -135,7 +137,11 @@ pub fn nearest(
                 best = Some((point, found));
             }
         }
-        if depth == DEPTH || no_foot(&tape, &sides, p, &over) {
+        if no_foot(&tape, &sides, p, &over) {
+            continue;
+        }
+        if depth == DEPTH {
+            left = left.min(distance);
             continue;
         }
         for k in 0..8 {
@@ -161,7 +167,7 @@ pub fn nearest(
     Ok(best.map(|(point, distance)| CertifiedNearest {
         point,
         distance,
-        at_least: (distance - accuracy).max(proved).min(distance),
+        at_least: (distance - accuracy).min(left).max(proved).min(distance),
     }))
 }
 
@@ -215,30 +221,56 @@ fn surface_point(
         return None;
     }
     let f = body.compiled.leaves[leaf as usize].primitive.of_sheet();
-    let mut q = start;
-    // First onto the surface, then alternately along it towards p and back.
-    for _ in 0..40 {
-        let ValueGradient { value, slope } = f.gradient(q);
-        let size = slope.norm_sq();
-        if size == 0.0 {
-            return None;
+    let q = foot(f, start, p)?;
+    let size = 1.0 + q.norm();
+    let shown = body.member(q, 1e-12 * size, std::slice::from_ref(f));
+    (shown == crate::Membership::Surface).then_some(q)
+}
+
+/// A point of the zero set of `f` near `start` whose normal passes through `p`: first onto the
+/// surface, then along it towards `p` and back, by shorter steps where that leads away because the
+/// surface bends more.
+fn foot(f: &Primitive, start: Vec3, p: Vec3) -> Option<Vec3> {
+    /// Numbers of Newton steps, and of steps along the surface.
+    const ONTO: usize = 40;
+    const ALONG: usize = 60;
+    /// Relative distance of the foot at which the distance is known to rounding.
+    const NEAR_FOOT: f64 = 1e-9;
+    let small = |step: f64, q: Vec3| step <= 1e-15 * (1.0 + q.norm());
+    let onto = |mut q: Vec3| {
+        for _ in 0..ONTO {
+            let ValueGradient { value, slope } = f.gradient(q);
+            let step = slope * (value / slope.norm_sq());
+            q -= step;
+            if small(step.norm(), q) {
+                break;
+            }
         }
+        q
+    };
+    let along = |q: Vec3| {
+        let ValueGradient { slope, .. } = f.gradient(q);
         let towards = p - q;
-        let along = towards - slope * (towards.dot(slope) / size);
-        let next = q - slope * (value / size) + along * 0.5;
+        towards - slope * (towards.dot(slope) / slope.norm_sq())
+    };
+    let mut q = onto(start);
+    let (mut way, mut pace) = (along(q), 0.5);
+    for _ in 0..ALONG {
+        let next = onto(q + way * pace);
+        let rest = along(next);
+        if rest.norm() > way.norm() {
+            pace *= 0.5;
+            continue;
+        }
         let step = next.distance(q);
-        q = next;
-        if step <= 1e-15 * (1.0 + q.norm()) {
+        (q, way) = (next, rest);
+        if step <= NEAR_FOOT * (1.0 + q.norm()) {
             break;
         }
     }
-    for _ in 0..4 {
-        let ValueGradient { value, slope } = f.gradient(q);
-        q -= slope * (value / slope.norm_sq());
-    }
-    let size = 1.0 + q.norm();
-    let shown = body.member(q, 1e-12 * size, std::slice::from_ref(f));
-    (q.is_finite() && shown == crate::Membership::Surface).then_some(q)
+    let ValueGradient { value, slope } = f.gradient(q);
+    let on = value.abs() <= 1e-12 * (1.0 + q.norm()) * slope.norm();
+    (q.is_finite() && on).then_some(q)
 }
 
 /// A point of an edge or a corner in a box where two or three primitives meet.

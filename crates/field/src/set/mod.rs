@@ -298,14 +298,37 @@ impl<T: Real> Set<T> {
         Ok(Self::cuboid(low, high)?.skin())
     }
 
-    /// The sheets on the surfaces of the set's primitives, each trimmed by the set: the surface of
-    /// a set whose primitives meet, such as a cuboid or a tetrahedron, without its interior.
+    /// The boundary of the set without its interior: of each primitive the sheet where the set
+    /// differs on both sides. Faces between parts that touch, or inside another part, are none.
     pub fn skin(&self) -> Self {
-        let mut set = Self::nothing();
-        for leaf in self.leaves() {
-            set = set | (Self::new(&leaf.primitive.abs()) & self.clone());
+        let all = self.traversal();
+        let plain = |p: &Primitive<T>| Leaf { primitive: p.re(), attributes: Default::default() };
+        let (_, sides) = body::surfaces_of(&all.iter().map(plain).collect::<Vec<_>>());
+        let place: FxHashMap<usize, usize> =
+            all.iter().enumerate().map(|(k, p)| (p.identity(), k)).collect();
+        let mut done: FxHashSet<u32> = FxHashSet::default();
+        let mut skin = Self::nothing();
+        for (leaf, own) in all.iter().zip(&sides) {
+            if leaf.is_sheet() {
+                skin = skin | (Self::of_leaf(leaf) & self.clone());
+                continue;
+            }
+            if !done.insert(own.surface) {
+                continue;
+            }
+            let on_side = |positive: bool| {
+                self.replaced(&|p| {
+                    let side = sides[*place.get(&p.identity())?];
+                    let same = side.surface == own.surface && !p.is_sheet();
+                    same.then(|| match side.flipped == positive {
+                        true => Self::everything(),
+                        false => Self::nothing(),
+                    })
+                })
+            };
+            skin = skin | (Self::new(&leaf.abs()) & (on_side(false) ^ on_side(true)));
         }
-        set
+        skin
     }
 
     /// The primitive, if the set is a single one.

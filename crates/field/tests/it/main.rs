@@ -11,6 +11,7 @@ mod faces;
 mod facets;
 mod mass;
 mod primitives;
+mod prisms;
 mod queries;
 mod rays;
 mod rows;

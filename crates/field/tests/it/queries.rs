@@ -3,6 +3,7 @@
 use crate::common::{axis, cube, facets, t_piece, v};
 use moldloft_field::{FieldError, Primitive, Set, nearest};
 use moldloft_num::{Plane, Vec3};
+use moldloft_testing::{Random, rounds};
 use std::f64::consts::PI;
 
 #[test]
@@ -39,6 +40,44 @@ fn nearest_points_of_curved_surfaces() {
     let ball = Set::new(&Primitive::sphere(Vec3::<f64>::zero(), 1.0).unwrap());
     let centre = nearest(&ball, Vec3::zero(), &cube(2.0), 1e-12).unwrap().unwrap();
     assert!((centre.distance - 1.0).abs() < 1e-12 && centre.at_least > 1.0 - 1e-12, "{centre:?}");
+}
+
+/// The foot of a point many radii away is found, and the bound holds.
+#[test]
+fn far_points_find_their_feet_on_small_bodies() {
+    let mut random = Random::new(3);
+    for _ in 0..rounds(20, 3000) {
+        let [c, p, d] = [3.0, 12.0, 1.0]
+            .map(|size| Vec3::from([0; 3].map(|_| random.between(-0.5 * size, 0.5 * size))));
+        let (r, minor) = (random.between(0.1, 0.6), random.between(0.02, 0.09));
+        let line = axis(c, d.normalized().unwrap());
+        let along = (p - c).dot(line.direction);
+        let aside = (p - c - line.direction * along).norm();
+        let ball = Primitive::sphere(c, r).unwrap();
+        let ring = Primitive::torus(line, r, minor).unwrap();
+        let caps = [-0.5, 0.5].map(|h| {
+            let n = line.direction * f64::signum(h);
+            Set::new(&Primitive::plane(n, c + line.direction * h).unwrap())
+        });
+        let [low, high] = caps;
+        let pole = Set::new(&Primitive::cylinder(line, r).unwrap()) & low & high;
+        let beyond = along.abs() - 0.5;
+        let from_pole = match (beyond > 0.0, aside > r) {
+            (true, true) => beyond.hypot(aside - r),
+            (true, false) => beyond,
+            (false, true) => aside - r,
+            (false, false) => (-beyond).min(r - aside),
+        };
+        for (set, exact) in [
+            (Set::new(&ball), (p.distance(c) - r).abs()),
+            (Set::new(&ring), ((aside - r).hypot(along) - minor).abs()),
+            (pole, from_pole),
+        ] {
+            let n = nearest(&set, p, &cube(7.0), 1e-6).unwrap().unwrap();
+            assert!((n.distance - exact).abs() < 1e-6, "{c:?} {r} {p:?}: {n:?} {exact}");
+            assert!(n.at_least <= exact + 1e-12, "{n:?} {exact}");
+        }
+    }
 }
 
 #[test]

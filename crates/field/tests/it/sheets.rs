@@ -179,3 +179,17 @@ fn thin_solids_have_the_area_of_their_faces() {
     assert!(m.solid.mesh.faces().is_empty() && m.sheets.len() == 6);
     close(area(&m), 2.0 * (1.9 * 1.5 + 1.5 * 1.1 + 1.9 * 1.1));
 }
+
+/// A face between two parts, or inside one, is no boundary.
+#[test]
+fn the_boundary_of_a_union_has_no_inner_sheets() {
+    let block = |low: [f64; 3], high: [f64; 3]| Set::cuboid(low.into(), high.into()).unwrap();
+    let left = block([-1.0, -0.5, -0.5], [0.0, 0.5, 0.5]);
+    let beside = left.clone() | block([0.0, -0.5, -0.5], [1.0, 0.5, 0.5]);
+    let within = left.clone() | block([-0.3, -0.5, -0.5], [1.0, 0.5, 0.5]);
+    for set in [beside, within] {
+        close(area(&mixed(&set.skin())), 10.0);
+    }
+    let hollow = left - block([-0.7, -0.2, -0.2], [-0.3, 0.2, 0.2]);
+    close(area(&mixed(&hollow.skin())), 6.0 + 6.0 * 0.16);
+}

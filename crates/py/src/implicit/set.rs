@@ -303,9 +303,11 @@ impl PySet {
         };
         let (pieces, over) = self.long(py, move |set, budget| {
             // A set that is proved to be empty has no triangle in any box.
-            let empty = given(corners).is_none() && moldloft::field::around(set)?.is_none();
             let unit = || Box3 { low: Vec3::zero(), high: Vec3::of(1.0, 1.0, 1.0) };
-            let over = if empty { unit() } else { region(set, given(corners))? };
+            let over = match given(corners) {
+                Some(over) => over,
+                None => moldloft::field::around(set)?.unwrap_or_else(unit),
+            };
             let options = FacetOptions { limit, budget, ..FacetOptions::new(resolution) };
             let plain = set.leaves().iter().all(|l| !l.primitive.is_sheet());
             // Only the given facets are reused: time and counts are those of the work done.
