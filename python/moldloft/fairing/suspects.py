@@ -8,10 +8,12 @@ hides no other and accuses no neighbour. The list is a ranking, not a test of si
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
+from statistics import median
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -243,18 +245,19 @@ class _Search:
     """The search for suspects, one after the other."""
 
     def __init__(self, data: Floats, lines: list[list[int]], axes: list[str], floor: float) -> None:
-        self.data, self.lines, self.axes, self.floor = data, lines, axes, floor
+        self.lines, self.axes, self.floor = lines, axes, floor
+        # Short lists of numbers: NumPy's calls would take longer than what they compute.
+        self.data: list[list[float]] = data.tolist()
+        self.columns: list[list[float]] = data.T.tolist()
         self.gone: set[int] = set()
-        self.found: dict[int, dict[tuple[int, int], _Prediction]] = {}
-        for k in range(len(lines)):
-            self.found[k] = self._line(k)
+        self.found = [self._line(own) for own in lines]
 
     def ranked(self, most: int) -> list[tuple[int, int, float, float]]:
         """Point, axis, deviation and its error, in descending order of certainty."""
         out: list[tuple[int, int, float, float]] = []
         while len(out) < most:
             each: dict[tuple[int, int], list[_Prediction]] = {}
-            for own in self.found.values():
+            for own in self.found:
                 for cell, prediction in own.items():
                     each.setdefault(cell, []).append(prediction)
             combined = [(cell, *_combined(own)) for cell, own in each.items()]
@@ -263,7 +266,11 @@ class _Search:
             # A large slip at a steep end comes before a small one where all is flat.
             combined.sort(key=lambda c: (-(c[1] ** 2) / c[2], c[0]))
             # Where the measure rises without it the point is not what spoils its lines.
-            gains = (c for c in combined if self.gain(c[0][0], {c[0]: self.data[c[0]] - c[1]}) > 0)
+            gains = (
+                c
+                for c in combined
+                if self.gain(c[0][0], {c[0]: self.data[c[0][0]][c[0][1]] - c[1]}) > 0
+            )
             best = next(gains, None)
             if best is None:
                 break
@@ -272,14 +279,19 @@ class _Search:
             self.gone.add(index)
             for k, line in enumerate(self.lines):
                 if index in line:
-                    self.found[k] = self._line(k)
+                    self.found[k] = self._line(line)
         return out
+
+    def _span(self, points: list[int], axis: int) -> float:
+        column = self.columns[axis]
+        own = [column[i] for i in points]
+        return max(own) - min(own)
 
     def neighbours(self, index: int, axis: int) -> list[int]:
         """Neighbours of a point on the lines along which the coordinate varies."""
         out = []
         for line in self.lines:
-            if index in line and np.ptp(self.data[line, axis]) > 0:
+            if index in line and self._span(line, axis) > 0:
                 k = line.index(index)
                 out += [line[j] for j in (k - 1, k + 1) if 0 <= j < len(line)]
         return out
@@ -287,29 +299,31 @@ class _Search:
     def gain(self, index: int, values: dict[tuple[int, int], float]) -> float:
         """Relative reduction of the squared third differences near a point by other values."""
         before = after = 0.0
-        moved = self.data.copy()
-        axes = set()
-        for cell, value in values.items():
-            moved[cell] = value
-            axes.add(cell[1])
+        axes = {axis for _, axis in values}
         for line in self.lines:
             if index in line and len(line) > _SIDE:
                 at = line.index(index)
+                own = [self.data[i] for i in line]
+                moved = list(own)
+                for (point, axis), value in values.items():
+                    for k, i in enumerate(line):
+                        if i == point:
+                            moved[k] = [*moved[k][:axis], value, *moved[k][axis + 1 :]]
                 for axis in axes:
-                    before += _third(self.data[line], axis, at)
-                    after += _third(moved[line], axis, at)
+                    before += _third(own, axis, at)
+                    after += _third(moved, axis, at)
         return 1 - after / before if before > 0 else 0.0
 
-    def _line(self, k: int) -> dict[tuple[int, int], _Prediction]:
-        own = self.lines[k]
+    def _line(self, own: list[int]) -> dict[tuple[int, int], _Prediction]:
         closed = len(own) > 1 and own[0] == own[-1]
         ring = own[:-1] if closed else own
+        varies = [axis for axis in range(3) if self._span(ring, axis) > 0]
         out: dict[tuple[int, int], _Prediction] = {}
         for at, index in enumerate(ring):
             if index in self.gone:
                 continue
-            for axis in range(3):
-                if "xyz"[axis] in self.axes[index] and np.ptp(self.data[ring, axis]) > 0:
+            for axis in varies:
+                if "xyz"[axis] in self.axes[index]:
                     prediction = self._predicted(ring, at, axis, closed)
                     if prediction is not None:
                         out[index, axis] = prediction
@@ -321,102 +335,117 @@ class _Search:
         order = range(1, n // 2 + 1) if closed else range(1, n)
 
         def side(way: int) -> list[int]:
-            places = (at + way * k for k in order)
-            kept = (own[p % n] for p in places if closed or 0 <= p < n)
-            return [i for i in kept if i not in self.gone][:_SIDE]
+            kept: list[int] = []
+            for k in order:
+                place = at + way * k
+                if not closed and not 0 <= place < n:
+                    break
+                if own[place % n] not in self.gone:
+                    kept.append(own[place % n])
+                if len(kept) == _SIDE:
+                    break
+            return kept
 
         low, high = side(-1)[::-1], side(1)
         if len(low) < _LEAST or len(high) < _LEAST:
             return None
         near = low[-_LEAST:] + high[:_LEAST]
-        others = [a for a in range(3) if a != axis]
-        held = max(others, key=lambda a: float(np.ptp(self.data[near, a])))
-        here = float(self.data[own[at], held])
-        wide = low + high
-        if not _monotone(self.data[near, held], here, _LEAST):
-            return None
-        t, v = self.data[near, held] - here, self.data[near, axis]
-        size = float(np.abs(t).max())
-        t = t / size
-        guesses = [_at_zero(t, v), 0.5 * (_at_zero(t[:3], v[:3]) + _at_zero(t[1:], v[1:]))]
-        if len(wide) > 4 and _monotone(self.data[wide, held], here, len(low)):
-            s, w = (self.data[wide, held] - here) / size, self.data[wide, axis]
-            guesses += [_at_zero(s, w), _fitted(s, w)]
-        middle = float(np.median(guesses))
-        value = float(self.data[own[at], axis])
-        if self._is_knuckle(low, high, held, axis, here, value, middle):
-            return None
-        slope = abs(np.polyfit(t, v, 2)[1]) / size
-        noise = self.floor * float(np.hypot(1.0, _SLOPE * slope))
-        return _Prediction(value - middle, float(np.hypot(np.ptp(guesses), noise)))
+        held = max((a for a in range(3) if a != axis), key=lambda a: self._span(near, a))
+        here, value = self.columns[held][own[at]], self.columns[axis][own[at]]
 
-    def _is_knuckle(
-        self,
-        low: list[int],
-        high: list[int],
-        held: int,
-        axis: int,
-        here: float,
-        value: float,
-        middle: float,
-    ) -> bool:
-        """True if extrapolation from each side meets the point, and interpolation misses it."""
-        if len(low) < _SIDE or len(high) < _SIDE:
+        def numbers(points: list[int]) -> tuple[list[float], list[float]]:
+            along, across = self.columns[held], self.columns[axis]
+            return [along[i] - here for i in points], [across[i] for i in points]
+
+        t, v = numbers(near)
+        if not _monotone(t, _LEAST):
+            return None
+        size = max(map(abs, t))
+        t = [x / size for x in t]
+        guesses = [_at_zero(t, v), 0.5 * (_at_zero(t[:3], v[:3]) + _at_zero(t[1:], v[1:]))]
+        wide = low + high
+        s, w = numbers(wide)
+        if len(wide) > 4 and _monotone(s, len(low)):
+            s = [x / size for x in s]
+            guesses += [_at_zero(s, w), _fitted(s, w)]
+        middle = median(guesses)
+        sides = [numbers(low), numbers(high)]
+        if _is_knuckle(sides, value, middle):
+            return None
+        slope = _slope(t, v) / size
+        noise = self.floor * math.hypot(1.0, _SLOPE * slope)
+        return _Prediction(value - middle, math.hypot(max(guesses) - min(guesses), noise))
+
+
+def _is_knuckle(sides: list[tuple[list[float], list[float]]], value: float, middle: float) -> bool:
+    """True if extrapolation from each side meets the point, and interpolation misses it."""
+    if any(len(t) < _SIDE for t, _ in sides):
+        return False
+    ends = []
+    for t, v in sides:
+        # No side has its quadratic and its line on different sides of the point by more.
+        if not _monotone(t, 0 if t[-1] * t[0] > 0 and abs(t[0]) < abs(t[-1]) else len(t)):
             return False
-        ends = []
-        for side in (low, high):
-            t, v = self.data[side, held] - here, self.data[side, axis]
-            # No side has its quadratic and its line on different sides of the point by more.
-            if not _monotone(t, 0.0, 0 if t[-1] * t[0] > 0 and abs(t[0]) < abs(t[-1]) else len(t)):
-                return False
-            inner = np.argsort(np.abs(t))[:2]
-            guesses = [_at_zero(t, v), _at_zero(t[inner], v[inner])]
-            ends.append(min(abs(value - guess) for guess in guesses))
-        return max(ends) < _KNUCKLE * abs(value - middle)
+        inner = sorted(range(len(t)), key=lambda k: abs(t[k]))[:2]
+        guesses = [_at_zero(t, v), _at_zero([t[k] for k in inner], [v[k] for k in inner])]
+        ends.append(min(abs(value - guess) for guess in guesses))
+    return max(ends) < _KNUCKLE * abs(value - middle)
 
 
 def _combined(own: list[_Prediction]) -> tuple[float, float]:
     """Combined prediction of several lines, weighted by their errors, uncertain if they differ."""
-    weights = np.array([1 / p.error**2 for p in own])
-    off = np.array([p.off for p in own])
-    mean = float((weights * off).sum() / weights.sum())
+    weights = [1 / p.error**2 for p in own]
+    total = sum(weights)
+    mean = sum(w * p.off for w, p in zip(weights, own, strict=True)) / total
     differ = 1.0
     if len(own) > 1:
-        differ = max(1.0, float((weights * (off - mean) ** 2).sum()) / (len(own) - 1))
-    return mean, float(np.sqrt(differ / weights.sum()))
+        spread = sum(w * (p.off - mean) ** 2 for w, p in zip(weights, own, strict=True))
+        differ = max(1.0, spread / (len(own) - 1))
+    return mean, math.sqrt(differ / total)
 
 
-def _monotone(t: Floats, here: float, before: int) -> bool:
-    """True if positions along a line are monotone without the point itself."""
-    whole = np.insert(t, before, here)
-    steps = np.diff(whole)
-    return bool((steps > 0).all() or (steps < 0).all())
+def _monotone(t: list[float], before: int) -> bool:
+    """True if positions along a line, counted from the point itself, are monotone with it."""
+    pairs = list(pairwise([*t[:before], 0.0, *t[before:]]))
+    return all(a < b for a, b in pairs) or all(a > b for a, b in pairs)
 
 
-def _at_zero(t: Floats, v: Floats) -> float:
+def _at_zero(t: list[float], v: list[float]) -> float:
     """The polynomial through all points at 0, by Lagrange's formula."""
     total = 0.0
-    for i in range(len(t)):
-        rest = np.delete(t, i)
-        total += float(v[i]) * float(np.prod(-rest / (t[i] - rest)))
+    for i, (a, value) in enumerate(zip(t, v, strict=True)):
+        factor = value
+        for j, b in enumerate(t):
+            if j != i:
+                factor *= b / (b - a)
+        total += factor
     return total
 
 
-def _fitted(t: Floats, v: Floats) -> float:
+def _fitted(t: list[float], v: list[float]) -> float:
     """The cubic of least squares at 0, nearer points weighed more."""
     weight = 1 / (1 + np.abs(t))
     columns = np.vander(t, 4) * weight[:, None]
-    return float(np.linalg.lstsq(columns, v * weight, rcond=None)[0][-1])
+    return float(np.linalg.lstsq(columns, np.asarray(v) * weight, rcond=None)[0][-1])
 
 
-def _third(points: Floats, axis: int, at: int) -> float:
+def _slope(t: list[float], v: list[float]) -> float:
+    """The size of the slope at 0 of the quadratic of least squares."""
+    columns = np.vander(t, 3)
+    return abs(float(np.linalg.lstsq(columns, np.asarray(v), rcond=None)[0][1]))
+
+
+def _third(points: list[list[float]], axis: int, at: int) -> float:
     """Squared third divided differences of a coordinate in which a point has part, in sum."""
-    chord = np.linalg.norm(np.diff(points, axis=0), axis=1)
-    t = np.concatenate([[0.0], np.cumsum(np.maximum(chord, 1e-300))])
-    t, v = t / t[-1], points[:, axis]
+    t = [0.0]
+    for p, q in pairwise(points):
+        t.append(t[-1] + max(math.dist(p, q), 1e-300))
+    first = max(at - _SIDE, 0)
+    near = slice(first, at + _SIDE + 1)
+    t, v = [x / t[-1] for x in t[near]], [p[axis] for p in points[near]]
     for order in range(1, 4):
-        v = np.diff(v) / np.maximum(t[order:] - t[:-order], 1e-300)
-    return float((v[max(at - _SIDE, 0) : at + 1] ** 2).sum())
+        v = [(b - a) / max(t[k + order] - t[k], 1e-300) for k, (a, b) in enumerate(pairwise(v))]
+    return sum(x * x for x in v)
 
 
 def _shown(value: float, like: str) -> str:

@@ -201,8 +201,10 @@ impl FairingPath<'_> {
                 let points = self.rough(k as f64 / steps as f64)?;
                 over = over.max(limits.beyond(&self.counter, &points));
             }
-            x += (over / HELD).min(1.0) / steps as f64;
+            x += (over / HELD).min(1.0);
         }
+        // Whole steps add up to the end of the path, to the bit.
+        x /= steps as f64;
         let on = ((fairest - HELD) / (EXCEEDS - HELD)).clamp(0.0, 1.0);
         if on == 0.0 {
             return Ok(x);
@@ -217,9 +219,9 @@ impl FairingPath<'_> {
                 };
                 over = over.max(beyond);
             }
-            y += (over / HELD).min(1.0) / PARAMETER_STEPS as f64;
+            y += (over / HELD).min(1.0);
         }
-        Ok(x + on * y)
+        Ok(x + on * (y / PARAMETER_STEPS as f64))
     }
 
     /// A curve between optima; its gap is its excess over the minimum.

@@ -18,6 +18,11 @@ const REACHED: f64 = 1.0 - 1e-4;
 /// Part of a tolerance that the start of the search keeps from it.
 const STRICT: f64 = 1e-9;
 
+/// Fraction of the way to the middle of the tolerances by which a polynomial first moves; it is
+/// quadrupled until the polynomial is within them.
+const PULL: f64 = 1e-15;
+const MOST_PULLS: i32 = 25;
+
 /// Rounds of the search for a polynomial within the tolerances.
 const ROUNDS: usize = 2000;
 
@@ -29,6 +34,7 @@ struct PieceBetweenBreaks {
 }
 
 /// A polynomial by its Bernstein coefficients on an interval.
+#[derive(Clone)]
 struct Polynomial {
     coefficients: Vec<Vec3<f64>>,
     ends: [f64; 2],
@@ -37,6 +43,13 @@ struct Polynomial {
 impl Polynomial {
     fn place(&self, t: f64) -> f64 {
         (t - self.ends[0]) / (self.ends[1] - self.ends[0])
+    }
+
+    /// The polynomial moved by a fraction of the way to another.
+    fn towards(&self, other: &Self, by: f64) -> Self {
+        let both = self.coefficients.iter().zip(&other.coefficients);
+        let coefficients = both.map(|(p, q)| *p + (*q - *p) * by).collect();
+        Self { coefficients, ends: self.ends }
     }
 
     /// The blossom of the polynomial: its multi-affine form at as many parameters as its degree
@@ -160,23 +173,14 @@ impl Data {
             if inner.clone().any(|c| held.contains(&c)) || inner.clone().all(|c| frozen[c]) {
                 continue;
             }
-            let Some(found) = self.nearest_polynomial(order - 1, frozen, &frame, &piece, &out)?
-            else {
-                continue;
-            };
-            let degree = self.layout.space.degree();
-            let mut points = out.points.clone();
-            for c in piece.control.clone().filter(|&c| !frozen[c]) {
-                let knots = &self.layout.space.knots()[c + 1..=c + degree];
-                let to = frame.down(found.control(knots) - points[c]);
-                points[c] += frame.up(to);
-            }
-            let within = piece.sites.iter().all(|&k| {
-                let Some(i) = self.layout.owner[k] else { return true };
-                let off = (self.layout.rows.apply(k, &points) - self.points[i]).norm();
-                off <= self.limit.radii[i]
-            });
-            if within {
+            let found = self.nearest_polynomial(order - 1, frozen, &frame, &piece, &out)?;
+            let Some([nearest, middle]) = found else { continue };
+            // What is at its limits may be beyond them by rounding: it moves towards the middle.
+            let mut steps =
+                (0..MOST_PULLS).map(|k| if k == 0 { 0.0 } else { libm::ldexp(PULL, 2 * k) });
+            let place =
+                |by: f64| self.placed(&nearest.towards(&middle, by), frozen, &frame, &piece, &out);
+            if let Some(points) = steps.find_map(place) {
                 (out.points, changed) = (points, true);
             }
         }
@@ -186,6 +190,30 @@ impl Data {
             out.active = reached.filter(|(r, a)| **a > 0.0 && **r >= **a * REACHED).count();
         }
         Ok(out)
+    }
+
+    /// The curve with a polynomial on a piece; none where that leaves a tolerance.
+    fn placed(
+        &self,
+        polynomial: &Polynomial,
+        frozen: &[bool],
+        frame: &MotionAxes,
+        piece: &PieceBetweenBreaks,
+        curve: &Optimum,
+    ) -> Option<Vec<Vec3<f64>>> {
+        let space = &self.layout.space;
+        let mut points = curve.points.clone();
+        for c in piece.control.clone().filter(|&c| !frozen[c]) {
+            let knots = &space.knots()[c + 1..=c + space.degree()];
+            let to = frame.down(polynomial.control(knots) - points[c]);
+            points[c] += frame.up(to);
+        }
+        let within = piece.sites.iter().all(|&k| {
+            let Some(i) = self.layout.owner[k] else { return true };
+            let off = (self.layout.rows.apply(k, &points) - self.points[i]).norm();
+            off <= self.limit.radii[i]
+        });
+        within.then_some(points)
     }
 
     /// The pieces between breaks.
@@ -211,8 +239,8 @@ impl Data {
         bounds.windows(2).map(piece).collect()
     }
 
-    /// The polynomial of a degree at most that is the nearest to the data of a piece; none where the
-    /// one next to the curve is not within the tolerances.
+    /// The polynomial of a degree at most that is the nearest to the data of a piece, and one strictly
+    /// within the tolerances; none where there is no such polynomial.
     fn nearest_polynomial(
         &self,
         most: usize,
@@ -220,7 +248,7 @@ impl Data {
         frame: &MotionAxes,
         piece: &PieceBetweenBreaks,
         curve: &Optimum,
-    ) -> Result<Option<Polynomial>, FairError> {
+    ) -> Result<Option<[Polynomial; 2]>, FairError> {
         let layout = &self.layout;
         let data: Vec<(usize, usize)> =
             piece.sites.iter().filter_map(|&k| layout.owner[k].map(|i| (k, i))).collect();
@@ -244,7 +272,8 @@ impl Data {
             .filter(|(_, _, radius)| *radius > 0.0 && radius.is_finite())
             .collect();
         let Some(coefficients) = inside(&limited, coefficients, &free) else { return Ok(None) };
-        let mut found = Polynomial { coefficients, ends };
+        let middle = Polynomial { coefficients, ends };
+        let mut found = middle.clone();
         let pulls = self.pulls();
         let (mut measure, mut offsets) = (SparseRows::new(), Vec::new());
         let mut bounds = NormBounds { direct: false, ..NormBounds::none() };
@@ -298,6 +327,6 @@ impl Data {
         for (c, x) in found.coefficients.iter_mut().zip(&solution.x) {
             *c += frame.up(*x as V);
         }
-        Ok(Some(found))
+        Ok(Some([found, middle]))
     }
 }

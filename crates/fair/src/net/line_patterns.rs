@@ -31,34 +31,30 @@ impl ValueTube<'_> {
         self.values[i] + share * self.rooms[i]
     }
 
-    /// The least last value of a convex list from `a` to `b` that begins at most at `begin`, within
-    /// a share of the rooms; none where there is no such list. With `sign` -1 all is upside down.
-    fn least_end(&self, [a, b]: [usize; 2], begin: f64, sign: f64, share: f64) -> Option<f64> {
+    /// The least last values of convex lists that begin at place `a`, at most at `begin`, within a share
+    /// of the rooms: one for each end from `a + 1` on, until none fits. With `sign` -1 all is upside
+    /// down.
+    fn least_ends(&self, a: usize, begin: f64, sign: f64, share: f64) -> Vec<f64> {
         let low = |i: usize| if sign > 0.0 { self.low(i, share) } else { -self.high(i, share) };
         let high = |i: usize| {
             let own = if sign > 0.0 { self.high(i, share) } else { -self.low(i, share) };
             if i == a { own.min(begin) } else { own }
         };
+        let slope = |i: usize, j: usize| (low(j) - high(i)) / (self.at[j] - self.at[i]);
         // A convex list stays above the line on from two of its points, the first at its highest
-        // and the second at its lowest; a bound of that on the points between is what makes it fit.
-        let mut least = low(b);
-        for i in a..b {
-            if low(i) > high(i) {
-                return None;
+        // and the second at its lowest: of lines on from one point the steepest is the highest.
+        let mut steepest: Vec<f64> = Vec::new();
+        let mut out = Vec::new();
+        for b in a + 1..self.at.len() {
+            let on = |(j, s): (usize, &f64)| low(j) + s * (self.at[b] - self.at[j]);
+            let least = (a + 1..b).zip(&steepest).map(on).fold(low(b), f64::max);
+            if low(b - 1) > high(b - 1) || least > high(b) {
+                break;
             }
-            for j in i + 1..b {
-                let slope = (low(j) - high(i)) / (self.at[j] - self.at[i]);
-                for k in j + 1..=b {
-                    let on = low(j) + slope * (self.at[k] - self.at[j]);
-                    if k == b {
-                        least = least.max(on);
-                    } else if on > high(k) {
-                        return None;
-                    }
-                }
-            }
+            out.push(least);
+            steepest.push((a..b).map(|i| slope(i, b)).fold(f64::NEG_INFINITY, f64::max));
         }
-        (least <= high(b)).then_some(least)
+        out
     }
 
     /// The signs of the second differences at the inner points of a list with so many changes that
@@ -79,16 +75,11 @@ impl ValueTube<'_> {
         let mut sign = first;
         for part in 0..=changes {
             let mut next: Vec<Option<(f64, usize)>> = vec![None; last + 1];
-            for b in part + 1..=last {
-                if (part == changes) != (b == last) {
-                    continue;
-                }
-                for a in part..b {
-                    let Some((begin, _)) = before[a] else { continue };
-                    let Some(end) = self.least_end([a, b], begin, sign, share) else {
-                        continue;
-                    };
-                    if next[b].is_none_or(|n| end < n.0) {
+            for a in part..last {
+                let Some((begin, _)) = before[a] else { continue };
+                for (b, end) in (a + 1..).zip(self.least_ends(a, begin, sign, share)) {
+                    let ends = (part == changes) == (b == last);
+                    if ends && next[b].is_none_or(|n| end < n.0) {
                         next[b] = Some((end, a));
                     }
                 }
@@ -177,5 +168,38 @@ mod tests {
         }
         let held = signs_of(|x| 0.02 * (x - 4.5).powi(3), 0.0);
         assert!(held[0] < 0.0 && held[held.len() - 1] > 0.0, "{held:?}");
+    }
+
+    #[test]
+    fn ends_of_convex_lists_are_those_of_all_lines_on() {
+        let mut state = 7u64;
+        let mut random = move || {
+            state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+            (state >> 11) as f64 / (1u64 << 53) as f64
+        };
+        for _ in 0..200 {
+            let mut t = 0.0;
+            let mut place = || {
+                t += 0.2 + random();
+                [t, 0.1 * t * t + 0.8 * random(), 0.6 * random()]
+            };
+            let all: Vec<[f64; 3]> = (0..9).map(|_| place()).collect();
+            let [at, values, rooms]: [Vec<f64>; 3] =
+                std::array::from_fn(|c| all.iter().map(|p| p[c]).collect());
+            let tube = ValueTube { at: &at, values: &values, rooms: &rooms };
+            let most = |k: usize| if k == 0 { 0.5 } else { f64::INFINITY };
+            let high = |k: usize| tube.high(k, 1.0).min(most(k));
+            let line = |i: usize, j: usize, k: usize| {
+                let slope = (tube.low(j, 1.0) - high(i)) / (at[j] - at[i]);
+                tube.low(j, 1.0) + slope * (at[k] - at[j])
+            };
+            let least = |b: usize| {
+                let pairs = (0..b).flat_map(|j| (0..j).map(move |i| (i, j)));
+                pairs.map(|(i, j)| line(i, j, b)).fold(tube.low(b, 1.0), f64::max)
+            };
+            let fits = |b: &usize| (0..=*b).all(|k| tube.low(k, 1.0).max(least(k)) <= high(k));
+            let expected: Vec<f64> = (1..9).take_while(fits).map(least).collect();
+            assert_eq!(tube.least_ends(0, 0.5, 1.0, 1.0), expected);
+        }
     }
 }

@@ -60,7 +60,9 @@ impl Schur {
             }
             // Conditions that repeat each other leave a singular matrix: a trace of weight decides.
             for i in 0..m {
-                matrix[i * m + i] *= 1.0 + 1e-13;
+                let own = &mut matrix[i * m + i];
+                // One on what does not move has no row.
+                *own = if *own == 0.0 { 1.0 } else { *own * (1.0 + 1e-13) };
             }
             matrix
         };
