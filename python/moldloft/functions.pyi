@@ -476,6 +476,32 @@ def extruded(
         AbsPoint A(0, 0, 0); AbsPoint B(2, 0, 0); AbsPoint C(1, 1, 0); BCurve c({A, B, C, A}, degree = 1); set s = extruded(c, {0, 0, 0.5}); SetBody bar(s, {-0.1, -0.1, -0.1}, {2.2, 1.1, 0.6}, depth = 4); assert abs(bar.volume - 0.5) < 0.01;
     """
     ...
+def extruded_region(
+    curves: Sequence[_Curve] | _Any,
+    by: _Point,
+) -> SetShape:
+    """The prism over the region inside an odd number of closed curves of one plane, such as the outlines of a text.
+
+    The curves must not cross one another.
+
+    Parameters
+    ----------
+    curves : list of curve
+        The closed curves.
+    by : point
+        Vector from their plane to the end.
+
+    Returns
+    -------
+    set
+
+    Notes
+    -----
+    In the language::
+
+        AbsPoint A(0, 0, 0); AbsPoint B(3, 0, 0); AbsPoint C(3, 3, 0); AbsPoint D(0, 3, 0); BCurve c({A, B, C, D, A}, degree = 1); AbsPoint P(1, 1, 0); AbsPoint Q(2, 1, 0); AbsPoint R(2, 2, 0); AbsPoint S(1, 2, 0); BCurve d({P, Q, R, S, P}, degree = 1); set s = extruded_region({c, d}, {0, 0, 0.5}); SetBody frame(s, {-0.1, -0.1, -0.1}, {3.2, 3.1, 0.6}, depth = 5); assert abs(frame.volume - 4) < 0.01;
+    """
+    ...
 def revolved(
     curve: _Curve,
     axis: _Curve,
@@ -6000,5 +6026,34 @@ def read_aerofoil(
     In the language::
 
         file f = open("a.dat", "w"); write(f, "a wedge"); for (x = 1:0:-.25) write(f, format("%g %g", x, .1*x)); for (x = .25:1:.25) write(f, format("%g %g", x, -.1*x)); close(f); assert read_aerofoil("a.dat").d1 == 9;
+    """
+    ...
+def text_outlines(
+    *args: object,
+    size: object = ...,
+    align: object = ...,
+) -> AnyShape:
+    """The outlines of a text in the plane z = 0 as closed curves, exact: loops round letters anticlockwise, those round holes clockwise.
+
+    Parameters
+    ----------
+    text : text
+        The text, of one or more lines.
+    font : text
+        A .ttf, .otf or .ttc file beside the program, or the name of a font of the system.
+    size : number, optional
+        Height of a capital letter; default 1.
+    align : text, optional
+        "left", "centre" or "right" of the origin; default "left".
+
+    Returns
+    -------
+    list
+
+    Notes
+    -----
+    In the language::
+
+        set s = extruded_region(text_outlines("HV", "letters.ttf", size = 7), {0, 0, 2}); SetBody b(s, {-1, -1, -1}, {15, 8, 3}, depth = 5); assert abs(b.volume - 89.84) < 1;
     """
     ...

@@ -67,6 +67,7 @@ impl SurfaceShape {
                 (ring * ring + h * h).sqrt() - minor
             }
             SurfaceShape::Image(image) => return image.distance(p),
+            SurfaceShape::Extruded(shape) => shape.distance(p),
             SurfaceShape::Nurbs(_) => return None,
         })
     }
@@ -87,6 +88,7 @@ impl SurfaceShape {
                 (p - axes.origin - out * *major).normalized().unwrap_or(out)
             }
             SurfaceShape::Image(image) => image.normal(p),
+            SurfaceShape::Extruded(shape) => shape.normal(p),
             SurfaceShape::Nurbs(_) => Vec3::zero(),
         }
     }
@@ -176,11 +178,13 @@ impl SurfaceShape {
                 one && parallel(axes.z, other.z) && near(*major, *r) && near(*minor, *t)
             }
             (SurfaceShape::Image(a), SurfaceShape::Image(b)) => a.is_same(b, tolerance),
+            (SurfaceShape::Extruded(a), SurfaceShape::Extruded(b)) => a.is_same(b, tolerance, size),
             _ => false,
         }
     }
 
-    /// A surface of revolution as a NURBS, u round its axis; of cylinders and cones the part between two heights.
+    /// A surface of revolution as a NURBS, u round its axis; of cylinders, cones and extruded curves the part between two
+    /// heights.
     pub fn nurbs(&self, heights: [f64; 2]) -> Option<Nurbs<2>> {
         let (x, y) = (Vec3::of(1.0, 0.0, 0.0), Vec3::of(0.0, 0.0, 1.0));
         let line = |radius: [f64; 2]| Nurbs {
@@ -204,6 +208,7 @@ impl SurfaceShape {
                 arc(x * *major, x * *minor, y * *minor, 0.0, TAU)
             }
             SurfaceShape::Image(image) => return image.nurbs(heights),
+            SurfaceShape::Extruded(shape) => return Some(shape.nurbs(heights)),
             _ => return None,
         };
         let axes = self.axes()?;

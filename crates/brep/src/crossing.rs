@@ -344,6 +344,9 @@ pub fn distance_bound(surface: &SurfaceShape, points: &[Vec3; 4]) -> f64 {
     if let SurfaceShape::Image(image) = surface {
         return image_bound(image, points);
     }
+    if let SurfaceShape::Extruded(shape) = surface {
+        return shape.bound(points);
+    }
     let Some(axes) = surface.axes() else {
         let far = |p: &Vec3| surface.distance(*p).unwrap_or(f64::INFINITY);
         return most(&points.map(|p| far(&p)));
@@ -426,7 +429,7 @@ fn sum(f: &[f64], a: f64, g: &[f64], b: f64, c: f64) -> Vec<f64> {
 }
 
 /// The product of two Bernstein forms.
-fn times(f: &[f64], g: &[f64]) -> Vec<f64> {
+pub(crate) fn times(f: &[f64], g: &[f64]) -> Vec<f64> {
     let (m, n) = (f.len() - 1, g.len() - 1);
     let mut out = vec![0.0; m + n + 1];
     for (i, x) in f.iter().enumerate() {

@@ -97,7 +97,7 @@ impl Brep {
                     x: mirrored(x, axis),
                     y: mirrored(y, axis),
                 },
-                line @ ExactCurve::Line { .. } => line,
+                other => other,
             });
             self.edges.push(BrepEdge { ends, curve, ellipse });
         }
@@ -120,6 +120,9 @@ impl Brep {
                 }
                 SurfaceShape::Image(image) => {
                     SurfaceShape::Image(Box::new(image.mirrored(|p| mirrored(p, axis))))
+                }
+                SurfaceShape::Extruded(shape) => {
+                    SurfaceShape::Extruded(Box::new(shape.mirrored(|p| mirrored(p, axis))))
                 }
                 // Their normals follow from their axes, as those of images do.
                 round => {

@@ -8,6 +8,7 @@
 use crate::analytic::arc;
 use crate::contacts::parted;
 use crate::crossing::crossing;
+use crate::extruded::cubic_span;
 use crate::seams::{FacetNet, ordered};
 use crate::{Brep, BrepEdge, BrepFace, Coedge, ExactCurve, SurfaceAxes, SurfaceShape, meet};
 use moldloft_num::Vec3;
@@ -627,6 +628,7 @@ impl LabelledBody {
         let inner = chain.vertices[1..n - 1].iter().map(|&v| self.net.positions[v as usize]);
         match chain.exact {
             Some(ExactCurve::Line { .. }) => Some((BrepEdge::segment(p, q), None)),
+            Some(ExactCurve::Cubic(points)) => Some((cubic_span(&points, [p, q], inner)?, None)),
             Some(ellipse @ ExactCurve::Ellipse { .. }) => {
                 let made = span(ellipse, [p, q], inner, chain.closed());
                 made.map(|(curve, own)| (curve, Some(own)))

@@ -14,6 +14,7 @@ mod analytic;
 mod check;
 mod contacts;
 mod crossing;
+mod extruded;
 mod foot;
 mod image;
 pub mod imported;
@@ -29,6 +30,7 @@ mod whole;
 
 pub use analytic::SurfaceAxes;
 pub use check::{Fault, ShellFacts};
+pub use extruded::ExtrudedCubic;
 pub use foot::foot;
 pub use labelled::{FacetFault, FacetFaultKind, LabelledFacets};
 pub use meet::{ExactCurve, meet};
@@ -149,6 +151,8 @@ pub enum SurfaceShape {
     },
     /// The affine image of one of these: an ellipsoid, an elliptic cylinder or a cone.
     Image(Box<SurfaceImage>),
+    /// A cylinder over a plane cubic.
+    Extruded(Box<ExtrudedCubic>),
     /// A NURBS.
     Nurbs(Box<Nurbs<2>>),
 }
@@ -262,6 +266,7 @@ impl Brep {
     pub(crate) fn heights(&self, face: &BrepFace) -> Option<[f64; 2]> {
         let height: Box<dyn Fn(Vec3) -> f64> = match &face.surface {
             SurfaceShape::Image(image) => Box::new(|p| image.height(p)),
+            SurfaceShape::Extruded(shape) => Box::new(|p| shape.height(p)),
             other => {
                 let axes = *other.axes()?;
                 Box::new(move |p| axes.local(p)[2])

@@ -1,9 +1,10 @@
-//! Lines, circles and ellipses in which two surfaces meet or touch.
+//! Lines, circles, ellipses and plane cubics in which two surfaces meet or touch.
 
+use crate::extruded::{near_cubic, plane_of};
 use crate::{SurfaceAxes, SurfaceImage, SurfaceShape};
 use moldloft_num::Vec3;
 
-/// A curve of degree 1 or 2.
+/// A line, an ellipse, or a plane cubic.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ExactCurve {
     /// A line through a point.
@@ -22,6 +23,8 @@ pub enum ExactCurve {
         /// The other semi-axis.
         y: Vec3,
     },
+    /// A plane cubic in Bézier form.
+    Cubic([Vec3; 4]),
 }
 
 impl ExactCurve {
@@ -31,10 +34,10 @@ impl ExactCurve {
         Self::Ellipse { centre, x: axes.x * radius, y: axes.y() * radius }
     }
 
-    /// The approximate angle of the point of an ellipse nearest to a point; 0 for a line.
+    /// The approximate angle of the point of an ellipse nearest to a point; 0 for other curves.
     pub fn angle(&self, p: Vec3) -> f64 {
         match self {
-            Self::Line { .. } => 0.0,
+            Self::Line { .. } | Self::Cubic(_) => 0.0,
             Self::Ellipse { centre, x, y } => {
                 let d = p - *centre;
                 libm::atan2(d.dot(*y) / y.norm_sq(), d.dot(*x) / x.norm_sq())
@@ -42,23 +45,19 @@ impl ExactCurve {
         }
     }
 
-    /// A point of an ellipse.
-    pub fn at(&self, t: f64) -> Vec3 {
-        match self {
-            Self::Line { point, direction } => *point + *direction * t,
-            Self::Ellipse { centre, x, y } => *centre + *x * libm::cos(t) + *y * libm::sin(t),
-        }
-    }
-
     /// A point of the curve near another.
     pub fn near(&self, p: Vec3) -> Vec3 {
         match self {
             Self::Line { point, direction } => *point + *direction * (p - *point).dot(*direction),
-            Self::Ellipse { .. } => self.at(self.angle(p)),
+            Self::Ellipse { centre, x, y } => {
+                let t = self.angle(p);
+                *centre + *x * libm::cos(t) + *y * libm::sin(t)
+            }
+            Self::Cubic(points) => near_cubic(points, p),
         }
     }
 
-    /// Planes through the curve: one for an ellipse, two for a line.
+    /// Planes through the curve: two for a line, one for another curve.
     pub fn planes(&self, normal: Vec3) -> Vec<SurfaceShape> {
         let plane = |origin: Vec3, normal: Vec3| SurfaceShape::Plane {
             origin,
@@ -75,6 +74,9 @@ impl ExactCurve {
             Self::Ellipse { centre, x, y } => {
                 x.cross(*y).normalized().map(|n| plane(*centre, n)).into_iter().collect()
             }
+            Self::Cubic(points) => {
+                plane_of(points).map(|n| plane(points[0], n)).into_iter().collect()
+            }
         }
     }
 }
@@ -85,10 +87,10 @@ enum ProfilePiece {
     Circle([f64; 2], f64),
 }
 
-/// The intersection of two surfaces, if it consists of lines, circles or ellipses; empty for other
-/// curves.
+/// The intersection of two surfaces, if it consists of lines, circles, ellipses or plane cubics; empty for
+/// other curves.
 pub fn meet(a: &SurfaceShape, b: &SurfaceShape, tolerance: f64, size: f64) -> Vec<ExactCurve> {
-    use SurfaceShape::{Cone, Cylinder, Image, Plane, Sphere, Torus};
+    use SurfaceShape::{Cone, Cylinder, Extruded, Image, Plane, Sphere, Torus};
     let parallel = |u: Vec3, v: Vec3| u.cross(v).norm() * size <= tolerance;
     let near = |u: f64, v: f64| (u - v).abs() <= tolerance;
     if let (Plane { origin, normal, .. }, Plane { origin: o, normal: n, .. }) = (a, b) {
@@ -97,6 +99,9 @@ pub fn meet(a: &SurfaceShape, b: &SurfaceShape, tolerance: f64, size: f64) -> Ve
         return point.map(|point| ExactCurve::Line { point, direction }).into_iter().collect();
     }
     match (a, b) {
+        (Extruded(shape), other) | (other, Extruded(shape)) => {
+            return shape.meet(other, tolerance, size);
+        }
         (Image(image), Plane { origin, normal, .. })
         | (Plane { origin, normal, .. }, Image(image)) => {
             return plane_image(*origin, *normal, image, tolerance, size);
@@ -242,6 +247,7 @@ fn plane_image(
             let [x, y] = principal(image.linear(x), image.linear(y));
             Some(ExactCurve::Ellipse { centre: image.world(centre), x, y })
         }
+        ExactCurve::Cubic(_) => None,
     };
     found.into_iter().filter_map(mapped).collect()
 }
@@ -468,9 +474,10 @@ fn common_axis(
     tolerance: f64,
     size: f64,
 ) -> Option<(Vec3, Vec3)> {
-    use SurfaceShape::{Image, Nurbs, Plane, Sphere};
+    use SurfaceShape::{Extruded, Image, Nurbs, Plane, Sphere};
     match (a, b) {
-        (Nurbs(_) | Image(_), _) | (_, Nurbs(_) | Image(_)) | (Plane { .. }, Plane { .. }) => None,
+        (Nurbs(_) | Image(_) | Extruded(_), _) | (_, Nurbs(_) | Image(_) | Extruded(_)) => None,
+        (Plane { .. }, Plane { .. }) => None,
         (Plane { normal, .. }, Sphere { axes, .. })
         | (Sphere { axes, .. }, Plane { normal, .. }) => Some((axes.origin, *normal)),
         (Sphere { axes, .. }, Sphere { axes: o, .. }) => {
@@ -517,7 +524,7 @@ fn profile(s: &SurfaceShape, origin: Vec3, z: Vec3) -> Vec<ProfilePiece> {
         SurfaceShape::Torus { axes, major, minor } => {
             vec![ProfilePiece::Circle([*major, height(axes.origin)], *minor)]
         }
-        SurfaceShape::Image(_) | SurfaceShape::Nurbs(_) => Vec::new(),
+        SurfaceShape::Image(_) | SurfaceShape::Extruded(_) | SurfaceShape::Nurbs(_) => Vec::new(),
     }
 }
 

@@ -2,7 +2,7 @@
 //!
 //! The flux of p/3 out of a face is (O . S + D)/3 about a point O: S is its vector area, by Stokes half the integral
 //! of p x dp along its border, and D the integral of (p - O) . n, which is zero on planes and on cones about their apex, the
-//! radius times the area on cylinders and spheres, and an integral over both angles on tori.
+//! radius times the area on cylinders and spheres, an integral over both angles on tori, and one over the parameter on extruded curves.
 
 use crate::{Brep, BrepFace, Coedge, SurfaceAxes, SurfaceImage, SurfaceShape};
 use moldloft_num::Vec3;
@@ -41,6 +41,13 @@ fn turn(a: [f64; 2], b: [f64; 2]) -> f64 {
     libm::atan2(a[0] * b[1] - a[1] * b[0], a[0] * b[0] + a[1] * b[1])
 }
 
+/// Romberg's table of three rows: the value of sums of steps of four, two and one, and its error.
+pub(crate) fn romberg(coarse: f64, middle: f64, fine: f64) -> (f64, f64) {
+    let two = |f: f64, c: f64| f + (f - c) / 3.0;
+    let (b, a) = (two(fine, middle), two(middle, coarse));
+    (b + (b - a) / 15.0, (b - a).abs() / 15.0)
+}
+
 /// The integrals along points on a smooth curve: of one step between neighbours, of two and of four.
 fn along(
     points: &[Vec3],
@@ -74,15 +81,9 @@ fn along(
         }
         (area, weighted, angle)
     };
-    // Romberg's table of three rows.
     let (coarse, middle, fine) = (by(4), by(2), by(1));
-    let two = |f: f64, c: f64| f + (f - c) / 3.0;
-    let three = |f: f64, m: f64, c: f64| {
-        let (b, a) = (two(f, m), two(m, c));
-        (b + (b - a) / 15.0, (b - a).abs() / 15.0)
-    };
-    let parts = [0, 1, 2].map(|k| three(fine.0[k], middle.0[k], coarse.0[k]));
-    let (weighted, off) = three(fine.1, middle.1, coarse.1);
+    let parts = [0, 1, 2].map(|k| romberg(coarse.0[k], middle.0[k], fine.0[k]));
+    let (weighted, off) = romberg(coarse.1, middle.1, fine.1);
     let error = off + size.max(ring) * parts.iter().map(|p| p.1).sum::<f64>();
     let area = Vec3::from(parts.map(|p| p.0));
     LoopIntegrals { area, weighted, angle: fine.2, tube: 0.0, error }
@@ -139,6 +140,9 @@ impl Brep {
         if let SurfaceShape::Image(image) = &face.surface {
             return self.flux_of_image(face, image, about);
         }
+        if let SurfaceShape::Extruded(shape) = &face.surface {
+            return Some(shape.flux(self, face, about));
+        }
         let plain =
             SurfaceAxes { origin: about, z: Vec3::of(0.0, 0.0, 1.0), x: Vec3::of(1.0, 0.0, 0.0) };
         let axes = face.surface.axes().unwrap_or(&plain);
@@ -153,7 +157,8 @@ impl Brep {
                 let (m, n) = (*major, *minor);
                 (m, Box::new(move |_, angle| tube(m, n, angle)))
             }
-            _ => (0.0, Box::new(height)),
+            SurfaceShape::Cylinder { .. } | SurfaceShape::Sphere { .. } => (0.0, Box::new(height)),
+            _ => (0.0, Box::new(|_, _| 0.0)),
         };
         let sense = if face.reversed { -1.0 } else { 1.0 };
         let (mut area, mut weighted, mut angle, mut error) = (Vec3::zero(), 0.0, 0.0, 0.0);
@@ -200,7 +205,7 @@ impl Brep {
                 whole(from(axes.origin) + radius * surface, radius * radius)
             }
             SurfaceShape::Torus { axes, .. } => whole(from(axes.origin) + weighted, 1.0),
-            SurfaceShape::Image(_) | SurfaceShape::Nurbs(_) => None,
+            SurfaceShape::Image(_) | SurfaceShape::Extruded(_) | SurfaceShape::Nurbs(_) => None,
         }
     }
 

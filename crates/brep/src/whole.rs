@@ -369,6 +369,7 @@ impl PatchedBody<'_> {
     ) -> Option<(Nurbs<1>, Option<ExactCurve>)> {
         match curve {
             ExactCurve::Line { .. } => Some((BrepEdge::segment(ends[0], ends[1]), None)),
+            ExactCurve::Cubic(_) => None,
             ExactCurve::Ellipse { .. } => {
                 let inner = chain[1..chain.len() - 1].iter();
                 let inner = inner.map(|v| self.net.positions[*v as usize]);

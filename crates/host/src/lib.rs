@@ -2,10 +2,15 @@
 //! server.
 //!
 //! Invariant: nothing outside the given folders is read for a model, links resolved; nothing whose name begins with a
-//! dot; regular files only.
+//! dot; regular files only. Of the system's folders of fonts a model gets the font that it names, and no list of them.
 
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 
+mod fonts;
+
+pub use fonts::system_font;
+
+use moldloft_font::SYSTEM_FONT;
 use moldloft_lang::{ReadText, TextReadError, World};
 use std::collections::HashMap;
 use std::fs::{File, OpenOptions};
@@ -71,6 +76,13 @@ impl World for FileWorld {
             message: format!("cannot read `{path}`: {reason}"),
             help,
         };
+        if let Some(font) = path.strip_prefix(SYSTEM_FONT) {
+            let bytes = system_font(font).map_err(|reason| {
+                let help = "name the file of a font in the model's folder";
+                refused(&reason, Some(help.into()))
+            })?;
+            return Ok(ReadText { name: path.into(), bytes });
+        }
         let found = self.find(path, from).map_err(|error| failed(path, &error))?;
         // A path given by the user may be a link to anywhere; one in a model must stay inside.
         if from.is_some() {

@@ -4,7 +4,7 @@
 //! of results. The two must be equal: no result depends on the width of registers, the optimisation
 //! level, threads or the C library.
 
-use moldloft::{Document, FileWorld, NoFiles, Value, WriteOptions, format_named, registry, write};
+use moldloft::{Document, FileWorld, Value, WriteOptions, format_named, registry, write};
 use std::path::{Path, PathBuf};
 
 /// FNV-1a of 64 bits (Fowler, Noll, Vo 1991).
@@ -153,8 +153,11 @@ pub fn lines(examples: bool) -> Vec<String> {
             found.push(format!("example {name} {}", of(document, &FORMATS)));
         }
     }
-    let text =
-        |name: &str, text: &str| Document::from_text(registry(), Box::new(NoFiles), name, text);
+    // The examples read a font of a few letters.
+    let letters = FileWorld::new(Some(&root().join("crates/font/tests")), &[]);
+    let text = |name: &str, text: &str| {
+        Document::from_text(registry(), Box::new(letters.clone()), name, text)
+    };
     for row in registry().rows() {
         if !row.example.is_empty() {
             let document = text("row.sdl", &row.example);

@@ -36,6 +36,7 @@ pub use moldloft_document as document;
 pub use moldloft_export as export;
 pub use moldloft_fair as fair;
 pub use moldloft_field as field;
+pub use moldloft_font as font;
 pub use moldloft_host as host;
 pub use moldloft_io as io;
 pub use moldloft_lang as lang;

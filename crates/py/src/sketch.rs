@@ -6,7 +6,8 @@ use crate::work::interruptible;
 use moldloft::brep::Brep;
 use moldloft::budget::Budget;
 use moldloft::diag::Severity;
-use moldloft::host::{FileWorld, read_regular};
+use moldloft::font::SYSTEM_FONT;
+use moldloft::host::{FileWorld, read_regular, system_font};
 use moldloft::io::step::{self, Protocol, StepHeader};
 use moldloft::lang::World;
 use moldloft::mesh::Mesh;
@@ -41,20 +42,25 @@ struct Disk {
 
 impl Files for Disk {
     fn read(&self, name: &str) -> Result<String, String> {
-        let text = |bytes: &[u8]| match std::str::from_utf8(bytes) {
+        match std::str::from_utf8(&self.font(name)?) {
             Ok(text) => Ok(text.to_owned()),
             Err(_) => Err("it is not UTF-8 text".into()),
-        };
+        }
+    }
+
+    fn font(&self, name: &str) -> Result<Arc<[u8]>, String> {
+        if let Some(font) = name.strip_prefix(SYSTEM_FONT) {
+            return system_font(font);
+        }
         if self.confined.load(Ordering::Relaxed) {
             let folder = self.folder.clone().unwrap_or_else(|| PathBuf::from("."));
             let from = folder.join("sketch");
             let read = FileWorld::new(Some(&folder), &[]).read(name, from.to_str());
-            return read.map_err(|error| error.message).and_then(|read| text(&read.bytes));
+            return read.map(|read| read.bytes).map_err(|error| error.message);
         }
         let beside = self.folder.iter().map(|f| f.join(name)).find(|p| p.exists());
         let path = beside.unwrap_or_else(|| PathBuf::from(name));
-        let bytes = read_regular(&path).map_err(|fault| fault.to_string())?;
-        text(&bytes)
+        read_regular(&path).map(Into::into).map_err(|fault| fault.to_string())
     }
 
     fn step(&self, brep: &Brep, title: &str, metres: f64) -> Result<Vec<u8>, String> {

@@ -4,6 +4,7 @@ use crate::identifier::identifier;
 use crate::object::SketchObject;
 use crate::solid::operation::Operation;
 use crate::{CoordinateAxis, DimensionExpr, LineId, PointId};
+use moldloft_font::{OutlineLoop, TextLayout};
 use std::sync::Arc;
 
 /// A placement of an object.
@@ -150,6 +151,29 @@ impl Hole {
     }
 }
 
+/// The letters of a text.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SectionText {
+    /// Its lines.
+    pub lines: Vec<String>,
+    /// The name of the font, as given.
+    pub font: String,
+    /// Position relative to the origin.
+    pub layout: TextLayout,
+    /// The loops around the letters, in heights of a capital letter.
+    pub loops: Arc<Vec<OutlineLoop>>,
+    /// The axis across the section.
+    pub axis: CoordinateAxis,
+    /// True if it is read from the other side of the section.
+    pub mirrored: bool,
+    /// Height of a capital letter.
+    pub size: DimensionExpr,
+    /// The coordinates of its origin along the two other axes, in the order x, y, z.
+    pub at: [DimensionExpr; 2],
+    /// Angle of its lines in degrees.
+    pub angle: DimensionExpr,
+}
+
 /// What an offset has at corners where its sides separate.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum OffsetCorner {
@@ -164,6 +188,8 @@ pub enum OffsetCorner {
 pub enum FeatureKind {
     /// Two bodies combined.
     Boolean(Operation),
+    /// A section of letters; it has no operands.
+    Text(Box<SectionText>),
     /// A section with its outline moved.
     Offset {
         /// The distance, outwards.
@@ -239,7 +265,7 @@ impl Placement {
 impl FeatureKind {
     /// True if it makes a section of a section.
     pub fn makes_section(&self) -> bool {
-        matches!(self, FeatureKind::Offset { .. })
+        matches!(self, FeatureKind::Offset { .. } | FeatureKind::Text(_))
     }
 
     /// True if its first operand is a section.
@@ -251,7 +277,7 @@ impl FeatureKind {
                 | FeatureKind::Sweep
                 | FeatureKind::Loft
         );
-        solid || self.makes_section()
+        solid || matches!(self, FeatureKind::Offset { .. })
     }
 
     /// The expressions of the feature, mutable.
@@ -261,6 +287,10 @@ impl FeatureKind {
             | FeatureKind::OnFace(_)
             | FeatureKind::Sweep
             | FeatureKind::Loft => vec![],
+            FeatureKind::Text(text) => {
+                let SectionText { size, at: [p, q], angle, .. } = &mut **text;
+                vec![size, p, q, angle]
+            }
             FeatureKind::Offset { distance, .. } | FeatureKind::Extrude(distance) => vec![distance],
             FeatureKind::Revolve { angle, .. } => vec![angle],
             FeatureKind::Place(place) => place.numbers_mut(),

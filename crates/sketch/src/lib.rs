@@ -92,7 +92,7 @@ pub use drawing::{
 };
 pub use feature::{
     EdgeBlend, EdgeChoice, FaceChoice, Feature, FeatureKind, FeatureOperand, Hole, HoleHead,
-    Placement,
+    Placement, SectionText,
 };
 pub use format::dimension_marks::DimensionMark;
 pub use format::script::{script, scripts};

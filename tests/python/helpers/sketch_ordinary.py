@@ -408,9 +408,14 @@ FAMILIES: dict[str, Callable[[Sizes], Tool]] = {
 }
 
 
-def read_volume(path: Any) -> float:
-    """The volume of a STEP file's solids, in its own unit of millimetres."""
+def read_step(path: Any) -> Any:
+    """The shape of a STEP file."""
     reader = STEPControl_Reader()
     reader.ReadFile(str(path))
     reader.TransferRoots()
-    return measures(reader.OneShape())[0]
+    return reader.OneShape()
+
+
+def read_volume(path: Any) -> float:
+    """The volume of a STEP file's solids, in its own unit of millimetres."""
+    return measures(read_step(path))[0]

@@ -15,7 +15,20 @@ pub fn rounds(long: usize) -> usize {
 
 /// A document of a program.
 pub fn open(text: &str) -> Document {
-    Document::from_text(registry(), Box::new(NoFiles), "model.sdl", text)
+    Document::from_text(registry(), Box::new(OneFont), "model.sdl", text)
+}
+
+/// The file that examples of functions read: a font of a few letters.
+pub struct OneFont;
+
+impl World for OneFont {
+    fn read(&self, path: &str, from: Option<&str>) -> Result<ReadText, TextReadError> {
+        const LETTERS: &[u8] = include_bytes!("../../../font/tests/letters.ttf");
+        match path {
+            "letters.ttf" => Ok(ReadText { name: path.to_owned(), bytes: LETTERS.into() }),
+            _ => NoFiles.read(path, from),
+        }
+    }
 }
 
 /// A document of a program without faults.

@@ -2,7 +2,7 @@
 //! libraries that they load: the figures are of closed forms of the bodies.
 #![allow(clippy::excessive_precision)] // figures as computed to more digits than a double has
 
-use crate::common::{number, reported, vector};
+use crate::common::{OneFont, number, reported, vector};
 use moldloft_document::{Document, NoFiles, registry};
 use moldloft_num::Vec3;
 use moldloft_registry::{Value, Vectors};
@@ -14,7 +14,7 @@ const FIGURE_5: &str = include_str!("fixtures/figure5.sdl");
 
 /// A program that runs without errors.
 fn run(text: &str) -> Document {
-    let document = Document::from_text(registry(), Box::new(NoFiles), "program.sdl", text);
+    let document = Document::from_text(registry(), Box::new(OneFont), "program.sdl", text);
     assert!(!document.has_errors(), "{}", reported(&document).join("\n"));
     document
 }

@@ -10,7 +10,7 @@ use moldloft_picture::PALETTE;
 /// Adds the faces of the body of that name, if it is one of a sketch; false for other bodies.
 ///
 /// # Errors
-/// Faces that are not a plane, cylinder, cone, sphere or torus; edges that are not found.
+/// Faces that are not a plane, cylinder, cone, sphere, torus or extruded curve; edges that are not found.
 pub fn add(
     brep: &mut Brep,
     document: &Document,

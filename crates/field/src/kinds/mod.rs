@@ -39,6 +39,7 @@ pub fn rows() -> Vec<Row> {
         shapes::InsideOf,
         profiles::ProfileOf,
         profiles::Extruded,
+        profiles::ExtrudedRegion,
         profiles::ProfileRevolved,
         sets::SetOf,
         sets::Cuboid,

@@ -181,6 +181,27 @@ impl<T: Real> ProfileField<T> {
         self.plane
     }
 
+    /// Largest distance of another curve from the plane of this one, relative to the extent of both.
+    pub fn off(&self, other: &Self) -> f64 {
+        let outline = &other.outline;
+        let [u, v] = outline.across;
+        let places = outline.points.iter().map(|[x, y]| outline.origin + u * *x + v * *y);
+        let own = &self.outline;
+        let normal = own.across[0].cross(own.across[1]);
+        let far = places.map(|p| ((p - own.origin).dot(normal).abs(), p.distance(own.origin)));
+        let (off, size) = far.fold((0.0f64, 0.0f64), |(a, b), (d, e)| (a.max(d), b.max(e)));
+        off / size
+    }
+
+    /// True if another curve of the plane is inside.
+    pub fn encloses(&self, other: &Self) -> bool {
+        let outline = &other.outline;
+        let [[x, y], [u, v]] = [outline.points[0], outline.points[1]];
+        let middle = [0.5 * (x + u), 0.5 * (y + v)];
+        let [a, b] = outline.across;
+        self.outline.inside(outline.origin + a * middle[0] + b * middle[1])
+    }
+
     /// The body as a set: where the curve is a polygon each side is a face of its own, a plane or a part of a
     /// cylinder or cone, so that the corners are edges; another curve is one face, and its corners are blunt in meshes.
     ///

@@ -42,7 +42,8 @@ pub fn check(brep: &Brep, format: &'static str) -> Result<(), WriteError> {
         if let SurfaceShape::Nurbs(s) = &face.surface {
             check_spline(format, &s.degrees, &s.knots, &s.points, s.weights.as_deref())?;
         }
-        if matches!(face.surface, SurfaceShape::Image(_)) && brep.nurbs(face).is_none() {
+        let patch = matches!(face.surface, SurfaceShape::Image(_) | SurfaceShape::Extruded(_));
+        if patch && brep.nurbs(face).is_none() {
             return Err(WriteError::CannotHold { format, what: "a surface without an axis" });
         }
     }
@@ -177,7 +178,7 @@ fn surface(file: &mut Part21, brep: &Brep, face: &BrepFace) -> usize {
             return file.add(format!("TOROIDAL_SURFACE('',#{placement},{major},{minor})"));
         }
         SurfaceShape::Nurbs(s) => s,
-        SurfaceShape::Image(_) => {
+        SurfaceShape::Image(_) | SurfaceShape::Extruded(_) => {
             let Some(made) = brep.nurbs(face) else { return 0 };
             image = made;
             &image

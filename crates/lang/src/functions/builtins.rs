@@ -291,6 +291,16 @@ functions! {
         "surface s[3,2] = {1, 2, 3}; write_cgns(\"s.cgns\", s); string names[1] = names_cgns(\"s.cgns\"); print names[1];"
         |run, call| run.names_cgns(call);
 
+    "text_outlines" List [
+        FieldSpec::new("text", Class::Text, "The text, of one or more lines."),
+        FieldSpec::new("font", Class::Text, "A .ttf, .otf or .ttc file beside the program, or the name of a font of the system."),
+        FieldSpec::new("size", Class::Number, "Height of a capital letter; default 1.").optional(),
+        FieldSpec::new("align", Class::Text, "\"left\", \"centre\" or \"right\" of the origin; default \"left\".").optional(),
+    ]
+        "The outlines of a text in the plane z = 0 as closed curves, exact: loops round letters anticlockwise, those round holes clockwise."
+        "set s = extruded_region(text_outlines(\"HV\", \"letters.ttf\", size = 7), {0, 0, 2}); SetBody b(s, {-1, -1, -1}, {15, 8, 3}, depth = 5); assert abs(b.volume - 89.84) < 1;"
+        |run, call| run.text_outlines(call);
+
     "read_points" Vectors [FILE]
         "The points of a text with two or three numbers to a line, as a curve."
         "curve c[2] = {1, 2, 3}; write_csv(\"c.csv\", c); curve d = read_points(\"c.csv\");"

@@ -16,6 +16,7 @@ pub(crate) mod grid_values;
 mod hanging;
 mod joint_report;
 pub mod named_blocks;
+mod outlines;
 pub mod plots;
 pub(crate) mod run_call;
 mod shape_measures;

@@ -73,7 +73,7 @@ pub fn is_sketch(name: &str) -> bool {
 /// Files read by a session, and files that it requested.
 #[derive(Debug, Default)]
 struct Shelf {
-    texts: BTreeMap<String, Result<String, String>>,
+    read: BTreeMap<String, Result<Arc<[u8]>, String>>,
     wanted: Option<String>,
 }
 
@@ -81,8 +81,14 @@ struct ShelfFiles(Arc<Mutex<Shelf>>);
 
 impl Files for ShelfFiles {
     fn read(&self, name: &str) -> Result<String, String> {
+        let bytes = self.font(name)?;
+        let text = moldloft_syntax::decode(&bytes, name).map_err(|d| d.message.clone())?;
+        Ok(text.to_string())
+    }
+
+    fn font(&self, name: &str) -> Result<Arc<[u8]>, String> {
         let mut shelf = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some(known) = shelf.texts.get(name) {
+        if let Some(known) = shelf.read.get(name) {
             return known.clone();
         }
         shelf.wanted.get_or_insert_with(|| name.to_owned());
@@ -154,11 +160,8 @@ impl SketchFile {
                 faults.extend(different_units(&objects).map(|fault| fault.at(whole)));
                 return SketchFile { path: path.into(), file, objects, faults };
             };
-            let read = world.read(&name, Some(path)).map_err(|e| e.message).and_then(|read| {
-                let text = moldloft_syntax::decode(&read.bytes, &read.name);
-                text.map(|t| t.to_string()).map_err(|d| d.message.clone())
-            });
-            shelf.lock().unwrap_or_else(PoisonError::into_inner).texts.insert(name, read);
+            let read = world.read(&name, Some(path)).map(|r| r.bytes).map_err(|e| e.message);
+            shelf.lock().unwrap_or_else(PoisonError::into_inner).read.insert(name, read);
         }
         let fault = Diagnostic::error("too-many-files", "the sketch reads too many files")
             .at(whole)

@@ -15,6 +15,14 @@ use crate::solid::operation::Operation;
 use moldloft_syntax::number::plain;
 use std::sync::Arc;
 
+/// A name that an object may have.
+pub(super) fn new_name(name: String, args: &Args) -> Result<String, CommandError> {
+    match name.chars().count() {
+        1..=32 => Ok(name),
+        _ => Err(args.wants("a name of 1 to 32 characters")),
+    }
+}
+
 impl SketchSession {
     /// Combines two bodies. The result is made of both and computed again with every change of theirs.
     pub(super) fn combine(&mut self, args: &mut Args, verb: &str) -> Result<(), CommandError> {
@@ -71,10 +79,7 @@ impl SketchSession {
         } else {
             self.operand(default)?.name.clone()
         };
-        if target.is_empty() || target.chars().count() > 32 {
-            return Err(args.wants("a name of 1 to 32 characters"));
-        }
-        Ok(target)
+        new_name(target, args)
     }
 
     /// Refuses an object without a body, with the reason.

@@ -20,6 +20,7 @@ mod session;
 mod shapes;
 mod solids;
 mod subject;
+mod text;
 mod treatments;
 mod typed;
 pub mod verbs;

@@ -24,6 +24,14 @@ pub trait Files: Send + Sync {
     /// The reason in words.
     fn read(&self, name: &str) -> Result<String, String>;
 
+    /// The bytes of a font: of a file, or of the system where `name` begins with [`moldloft_font::SYSTEM_FONT`].
+    ///
+    /// # Errors
+    /// The reason in words.
+    fn font(&self, _: &str) -> Result<Arc<[u8]>, String> {
+        Err("no fonts can be read here".to_owned())
+    }
+
     /// A boundary representation as a STEP file, of a title and the unit of length in metres, for hosts that
     /// can write one.
     ///
@@ -500,6 +508,7 @@ impl SketchSession {
             "FACE" => self.face(args),
             "CHOOSE" => self.choose(args),
             "OFFSET" => self.offset(args),
+            "TEXT" => self.text(args),
             "LOFT" => self.loft(args),
             "SWEEP" => self.sweep_section(args),
             "EXTRUDE" => self.extrude(args),

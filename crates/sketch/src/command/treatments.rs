@@ -27,7 +27,12 @@ impl OwnNumbers {
             kind: FeatureKind::Place(Placement::Move(nothing)),
             operands: operand(object),
         };
-        OwnNumbers { probe: feature.object(&object.name), made: Vec::new() }
+        OwnNumbers::new(feature.object(&object.name))
+    }
+
+    /// Numbers beside those of an object.
+    pub fn new(probe: SketchObject) -> Self {
+        OwnNumbers { probe, made: Vec::new() }
     }
 
     pub fn add(&mut self, stem: &str, value: DimensionExpr) -> Result<DimensionExpr, CommandError> {

@@ -2,12 +2,14 @@
 
 use crate::feature::{
     EdgeBlend, EdgeChoice, FaceChoice, Feature, FeatureKind, HoleHead, OffsetCorner, Placement,
+    SectionText,
 };
 use crate::solid::curve::{CurveKind, SketchCurve};
 use crate::{
     CoordinateAxis, DimensionExpr, DimensionRole, LineTypeSource, MeasuredQuantity, Reference,
     SketchObject,
 };
+use moldloft_font::{HorizontalAlign, VerticalAlign};
 use moldloft_syntax::number::plain;
 use std::fmt::Write;
 
@@ -22,6 +24,12 @@ pub(crate) fn quoted(text: &str) -> String {
         (_, true) => format!("'{text}'"),
         _ => format!("\"{text}\""),
     }
+}
+
+/// A text in quotes.
+fn quoted_text(text: &str) -> String {
+    let mark = if text.contains('"') { '\'' } else { '"' };
+    format!("{mark}{text}{mark}")
 }
 
 /// `X 1 TO 3`, `LENGTH 4`: the quantity of a dimension, as in its command.
@@ -131,6 +139,7 @@ fn write_feature(object: &SketchObject, feature: &Feature, out: &mut String) -> 
     let own: Vec<&crate::Variable> = own.collect();
     let command = match &feature.kind {
         FeatureKind::Boolean(operation) => format!("{} {parts} INTO {name}", operation.word()),
+        FeatureKind::Text(text) => text_command(text, &name, &own_value),
         FeatureKind::Offset { distance, corner } => {
             let corner = match corner {
                 OffsetCorner::Round => "ROUND",
@@ -256,6 +265,39 @@ fn write_feature(object: &SketchObject, feature: &Feature, out: &mut String) -> 
         writeln!(out, "ERASE {name}")?;
     }
     writeln!(out, "END")
+}
+
+fn text_command(
+    text: &SectionText,
+    name: &str,
+    value: &dyn Fn(&DimensionExpr) -> String,
+) -> String {
+    let lines: Vec<String> = text.lines.iter().map(|line| quoted_text(line)).collect();
+    let plane = match text.axis {
+        CoordinateAxis::X => "YZ",
+        CoordinateAxis::Y => "XZ",
+        CoordinateAxis::Z => "XY",
+    };
+    let along = match text.layout.horizontal {
+        HorizontalAlign::Left => "LEFT",
+        HorizontalAlign::Centre => "CENTRE",
+        HorizontalAlign::Right => "RIGHT",
+    };
+    let across = match text.layout.vertical {
+        VerticalAlign::Baseline => "BASELINE",
+        VerticalAlign::Bottom => "BOTTOM",
+        VerticalAlign::Middle => "MIDDLE",
+        VerticalAlign::Top => "TOP",
+    };
+    let mirrored = if text.mirrored { " MIRRORED" } else { "" };
+    let [p, q] = text.at.each_ref().map(value);
+    format!(
+        "TEXT {name} {} FONT {} SIZE {} AT {p} {q} ANGLE {} {along} {across} PLANE {plane}{mirrored}",
+        lines.join(" "),
+        quoted_text(&text.font),
+        value(&text.size),
+        value(&text.angle),
+    )
 }
 
 fn write(object: &SketchObject, out: &mut String) -> std::fmt::Result {

@@ -283,7 +283,10 @@ pub(super) fn body_at<T: Real>(
 impl Feature {
     /// An object defined by this feature. The numbers of its operands become its variables.
     pub fn object(self, name: &str) -> SketchObject {
-        let section = self.operands.first().and_then(|first| first.object.drawing.section);
+        let section = match &self.kind {
+            FeatureKind::Text(text) => Some(text.axis),
+            _ => self.operands.first().and_then(|first| first.object.drawing.section),
+        };
         let mut out = SketchObject::new(name, section.filter(|_| self.kind.makes_section()));
         if let Some(first) = self.operands.first() {
             out.units.clone_from(&first.object.units);
@@ -485,6 +488,19 @@ impl Feature {
             (_, [..]) if empty.contains(&true) => Err(nothing()),
             (FeatureKind::Boolean(operation), [a, b]) => {
                 combined([a, b], *operation).map_err(NoBody::Combine)
+            }
+            (FeatureKind::Text(text), []) => {
+                let size = value(&text.size)?;
+                if size.re() <= 0.0 {
+                    let fault = "a text of no height";
+                    let fault = TreatmentFault::new(fault, None, "give a size above 0");
+                    return Err(NoBody::Treatment(fault));
+                }
+                let angle = value(&text.angle)? * (std::f64::consts::PI / 180.0);
+                let [p, q] = &text.at;
+                let mut made = text.section(size, [value(p)?, value(q)?], angle);
+                made.density = plan.density();
+                valid(made).map_err(NoBody::Flaw)
             }
             (FeatureKind::Offset { distance, corner }, [section]) => {
                 let name = |e: usize| side_name(&self.operands[0].object, section, e);

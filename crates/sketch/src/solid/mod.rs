@@ -48,6 +48,7 @@ pub mod surface;
 mod sweep_path;
 mod swept;
 mod tangent_ruling;
+mod text;
 mod turn;
 pub mod validity;
 

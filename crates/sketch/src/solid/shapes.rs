@@ -1,17 +1,20 @@
-//! A finished body as a boundary representation: its faces on the planes, cylinders, cones, spheres and tori that
-//! they are parts of.
+//! A finished body as a boundary representation: its faces on the planes, cylinders, cones, spheres, tori and
+//! extruded curves that they are parts of.
 
 use super::SketchSolid;
 use super::curve::SmoothPiece;
 use super::edges::FaceForm;
 use super::surface::FaceSurface;
-use moldloft_brep::{Brep, FacetFault, FacetFaultKind, LabelledFacets, SurfaceAxes, SurfaceShape};
+use moldloft_brep::{
+    Brep, ExtrudedCubic, FacetFault, FacetFaultKind, LabelledFacets, SurfaceAxes, SurfaceImage,
+    SurfaceShape,
+};
 use moldloft_num::{Axis as Line, Vec3};
 
 /// Reason why a body has no exact boundary representation.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ShapeFault {
-    /// A face is not a plane, cylinder, cone, sphere or torus: its name and a point on it.
+    /// A face is not a plane, cylinder, cone, sphere, torus or extruded curve: its name and a point on it.
     Surface(String, Vec3),
     /// An edge or corner is not found.
     Facets(FacetFault),
@@ -20,9 +23,10 @@ pub enum ShapeFault {
 impl std::fmt::Display for ShapeFault {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let (text, at) = match self {
-            ShapeFault::Surface(name, at) => {
-                (format!("{name} is not a plane, cylinder, cone, sphere or torus"), at)
-            }
+            ShapeFault::Surface(name, at) => (
+                format!("{name} is not a plane, cylinder, cone, sphere, torus or extruded curve"),
+                at,
+            ),
             ShapeFault::Facets(fault) => {
                 let what = match fault.kind {
                     FacetFaultKind::NotClosed => "the faces round an edge are not in pairs",
@@ -47,7 +51,7 @@ impl std::fmt::Display for ShapeFault {
 }
 
 impl SketchSolid<f64> {
-    /// The surface of a face, if it is a plane, cylinder, cone, sphere or torus.
+    /// The surface of a face, if it is a plane, cylinder, cone, sphere, torus or extruded curve.
     pub fn face_shape(&self, face: usize) -> Option<SurfaceShape> {
         match (self.form(face), self.surface(face)) {
             (FaceForm::Plane { at, normal }, _) => {
@@ -57,6 +61,7 @@ impl SketchSolid<f64> {
             (_, Some(FaceSurface::Turned { centre, axis, profile, .. })) => {
                 turned_shape(&Line { point: centre, direction: axis }, &profile)
             }
+            (_, Some(FaceSurface::Ruled { near, far })) => extruded_shape(&near, &far),
             _ => None,
         }
     }
@@ -117,6 +122,33 @@ impl SketchSolid<f64> {
         let mut brep = Brep::default();
         brep.add_facets(facets, accuracy, size).map_err(ShapeFault::Facets)?;
         Ok(brep)
+    }
+}
+
+/// An elliptic cylinder, or one over a cubic.
+fn extruded_shape(near: &SmoothPiece<f64>, far: &SmoothPiece<f64>) -> Option<SurfaceShape> {
+    const SAME: f64 = 1e-12;
+    match (near, far) {
+        (SmoothPiece::Cubic(p), SmoothPiece::Cubic(q)) => {
+            let along = q[0] - p[0];
+            let size = along.norm() + p[0].distance(p[3]);
+            let moved = |k: usize| (q[k] - p[k]).distance(along) <= SAME * size;
+            let cubic = ExtrudedCubic::new(*p, along).filter(|_| (0..4).all(moved));
+            cubic.map(|shape| SurfaceShape::Extruded(Box::new(shape)))
+        }
+        (
+            SmoothPiece::Conic { centre, a, b, .. },
+            SmoothPiece::Conic { centre: other, a: c, b: d, .. },
+        ) => {
+            let size = a.norm() + b.norm();
+            let moved = a.distance(*c).max(b.distance(*d)) <= SAME * size;
+            let z = Vec3::of(0.0, 0.0, 1.0);
+            let axes = SurfaceAxes { origin: Vec3::zero(), z, x: Vec3::of(1.0, 0.0, 0.0) };
+            let of = SurfaceShape::Cylinder { axes, radius: 1.0 };
+            let image = SurfaceImage::new(of, *centre, [*a, *b, *other - *centre])?;
+            moved.then(|| SurfaceShape::Image(Box::new(image)))
+        }
+        _ => None,
     }
 }
 

@@ -29,6 +29,7 @@ mod solids;
 mod svg_shapes;
 mod sweeps;
 mod tangent;
+mod texts;
 mod treatments;
 mod typed;
 mod verbs;
