@@ -213,7 +213,7 @@ export interface Requests {
   reorder: {
     /** The object. */
     name: string
-    /** The other one. */
+    /** The object beside which it comes. */
     beside: string
     /** True for behind it. */
     behind?: boolean

@@ -43,7 +43,6 @@ impl SketchSession {
         let along = [
             ("LEFT", HorizontalAlign::Left),
             ("CENTRE", HorizontalAlign::Centre),
-            ("CENTER", HorizontalAlign::Centre),
             ("RIGHT", HorizontalAlign::Right),
         ];
         if let Some((_, align)) = along.into_iter().find(|(word, _)| args.take(word)) {

@@ -235,6 +235,7 @@ const HOLED: &str = "SKETCH A 2D XZ; POINT 1 0 0; POINT 2 100 0; POINT 3 100 80;
 /// Preparation (a name in capitals is one of the texts above) and command: with [`TABLE`], one for
 /// each error.
 const CASES: &[(&str, &str)] = &[
+    ("", "TEXT L \"H\" FONT nothing.ttf"),
     (
         "SKETCH A 2D XY; RECTANGLE 4 4; EXTRUDE A 2; SKETCH D 2D XY",
         "CIRCLE DIAMETER 2 AT \"A.WIDTH9/2\" 0",
