@@ -893,7 +893,7 @@ def liming(
     l3 : field
         The rail, or the first of the two other bodies.
     l4 : field, optional
-        The other of them.
+        The second of the two other bodies.
     lambda : number, optional
         Shape between 0 (near the rail) and 1 (near the bodies). Default 0.5.
     contact : integer, optional
@@ -1495,7 +1495,7 @@ def minkowski_sum(
     a : set
         A set.
     b : set
-        The other.
+        The other set.
 
     Returns
     -------
@@ -1523,7 +1523,7 @@ def set_fillet(
     a : set
         A set, of planes, balls, cylinders, cones and tori.
     b : set
-        The other.
+        The other set.
     width : number
         Setback of the blend on both. At least 0.
     other : number, optional
@@ -2009,7 +2009,7 @@ def distance(
     a : set
         A set.
     b : set
-        The other.
+        The other set.
     low : point, optional
         Low corner of the box.
     high : point, optional
@@ -5986,6 +5986,35 @@ def names_cgns(
         surface s[3,2] = {1, 2, 3}; write_cgns("s.cgns", s); string names[1] = names_cgns("s.cgns"); print names[1];
     """
     ...
+def text_outlines(
+    *args: object,
+    size: object = ...,
+    align: object = ...,
+) -> AnyShape:
+    """The outlines of a text in the plane z = 0 as closed curves, exact: loops round letters anticlockwise, those round holes clockwise.
+
+    Parameters
+    ----------
+    text : text
+        The text, of one or more lines.
+    font : text
+        A .ttf, .otf or .ttc file beside the program, or the name of a font of the system.
+    size : number, optional
+        Height of a capital letter; default 1.
+    align : text, optional
+        "left", "centre" or "right" of the origin; default "left".
+
+    Returns
+    -------
+    list
+
+    Notes
+    -----
+    In the language::
+
+        set s = extruded_region(text_outlines("HV", "letters.ttf", size = 7), {0, 0, 2}); SetBody b(s, {-1, -1, -1}, {15, 8, 3}, depth = 5); assert abs(b.volume - 89.84) < 1;
+    """
+    ...
 def read_points(
     *args: object,
 ) -> AnyShape:
@@ -6026,34 +6055,5 @@ def read_aerofoil(
     In the language::
 
         file f = open("a.dat", "w"); write(f, "a wedge"); for (x = 1:0:-.25) write(f, format("%g %g", x, .1*x)); for (x = .25:1:.25) write(f, format("%g %g", x, -.1*x)); close(f); assert read_aerofoil("a.dat").d1 == 9;
-    """
-    ...
-def text_outlines(
-    *args: object,
-    size: object = ...,
-    align: object = ...,
-) -> AnyShape:
-    """The outlines of a text in the plane z = 0 as closed curves, exact: loops round letters anticlockwise, those round holes clockwise.
-
-    Parameters
-    ----------
-    text : text
-        The text, of one or more lines.
-    font : text
-        A .ttf, .otf or .ttc file beside the program, or the name of a font of the system.
-    size : number, optional
-        Height of a capital letter; default 1.
-    align : text, optional
-        "left", "centre" or "right" of the origin; default "left".
-
-    Returns
-    -------
-    list
-
-    Notes
-    -----
-    In the language::
-
-        set s = extruded_region(text_outlines("HV", "letters.ttf", size = 7), {0, 0, 2}); SetBody b(s, {-1, -1, -1}, {15, 8, 3}, depth = 5); assert abs(b.volume - 89.84) < 1;
     """
     ...

@@ -235,7 +235,7 @@ def liming(
     l3
         The rail, or the first of the two other bodies.
     l4
-        The other of them.
+        The second of the two other bodies.
     lambda_
         Shape between 0 (near the rail) and 1 (near the bodies). Default 0.5.
     contact
@@ -271,7 +271,7 @@ def minkowski_sum(
     a
         A set.
     b
-        The other.
+        The other set.
 
     Returns
     -------
