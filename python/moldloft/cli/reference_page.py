@@ -82,8 +82,8 @@ FUNCTIONS = (
     (
         "Files",
         "open close read write more next rewind read_p3d read_points read_aerofoil text_outlines "
-        "write_p3d write_vts write_stl write_cgns write_su2 write_gmsh write_blockmesh write_polymesh "
-        "write_ugrid write_nmf count_p3d "
+        "write_p3d write_vts write_stl write_cgns write_su2 write_gmsh write_blockmesh "
+        "write_polymesh write_ugrid write_nmf count_p3d "
         "iblank_p3d read_cgns count_cgns names_cgns "
         "write_csv plot",
     ),

@@ -185,9 +185,10 @@ def test_a_corner_cut_off_is_there(cut: float, tmp_path: Path) -> None:
 
 
 def test_what_all_cells_miss_is_refused(tmp_path: Path) -> None:
-    # A disc of a fifteenth of the finest cells beside the block: no sample of a face is near.
+    # A disc of a fifteenth of the finest cells beside the block, across no axis: no sample of a
+    # face is near.
     text = (
-        "Line c({12, 5.067, 5.061}, {13, 5.067, 5.061}); set s = cuboid({0, 0, 0}, {10, 10, 10})"
+        "Line c({12, 5.067, 5.061}, {13, 5.267, 5.161}); set s = cuboid({0, 0, 0}, {10, 10, 10})"
         " | cuboid({12.013, 5.017, 5.011}, {12.016, 5.117, 5.111})"
         " & set(cylinder(c, 0.05)); SetBody b(s);"
     )

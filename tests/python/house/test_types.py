@@ -252,9 +252,9 @@ AbsRing a_ring(a_snake, 0.5); ZPlane a_plane(1); RPYFrame a_frame(a_point); CosR
 
 
 PUBLIC = (
-    "adapters blocks builder cad fairing fairing.tables files formats grids high_order "
-    "hydrostatics implicit language lines_plan loading mesh models nurbs objects offsets sketches "
-    "stability study units weights"
+    "adapters builder cad exchange.files fairing fairing.tables formats grids high_order "
+    "hydro.hydrostatics hydro.stability hydro.weights implicit language lines_plan loading models "
+    "offsets shapes.blocks shapes.mesh shapes.nurbs shapes.objects shapes.sketches study units"
 )
 
 

@@ -92,7 +92,8 @@ impl Grid {
                 (*leaf as usize) < own_leaves && depends[k] >> axis & 1 == 0
             };
             let any = tape.leaf.iter().enumerate().any(apart);
-            any.then(|| Layers { grid: &self, axis, tape, room: &mut room }.lines(over)).flatten()
+            any.then(|| GridLayers { grid: &self, axis, tape, room: &mut room }.lines(over))
+                .flatten()
         });
         for (k, lines) in fitted.into_iter().enumerate() {
             let Some(mut lines) = lines else { continue };
@@ -169,7 +170,7 @@ const ONE_LEVEL: f64 = 1e5;
 const BESIDE: f64 = 1e-6;
 
 /// A set between two planes across an axis.
-enum Between {
+enum SlabContent {
     Air,
     /// A prism along the axis.
     Prism,
@@ -177,14 +178,14 @@ enum Between {
 }
 
 /// The layers of cells along an axis.
-struct Layers<'a> {
+struct GridLayers<'a> {
     grid: &'a Grid,
     axis: usize,
     tape: &'a ExprTape<f64>,
     room: &'a mut Vec<Interval>,
 }
 
-impl Layers<'_> {
+impl GridLayers<'_> {
     /// The planes between layers; `None` where cells of equal size do as well.
     fn lines(mut self, over: &Box3) -> Option<Vec<f64>> {
         let uniform = &self.grid.lines[self.axis];
@@ -202,15 +203,17 @@ impl Layers<'_> {
             let mut kept = vec![true; inner.len()];
             match self.between(a + slack, b - slack) {
                 // Cells of the usual size show the gap.
-                Between::Prism | Between::Air if matches!(inner.len(), 1 | 2) => {}
-                Between::Air if outside => {}
-                Between::Prism | Between::Air => {
+                SlabContent::Prism | SlabContent::Air if matches!(inner.len(), 1 | 2) => {}
+                SlabContent::Air if outside => {}
+                SlabContent::Prism | SlabContent::Air => {
                     // A plane has one layer, up to the middle of the gap beside it.
                     out.push(0.5 * (a + b));
                     changed = true;
                     continue;
                 }
-                Between::Other => self.join(inner, [0, inner.len().saturating_sub(1)], &mut kept),
+                SlabContent::Other => {
+                    self.join(inner, [0, inner.len().saturating_sub(1)], &mut kept)
+                }
             }
             changed |= kept.contains(&false);
             out.extend(inner.iter().zip(&kept).filter(|(_, keep)| **keep).map(|(x, _)| *x));
@@ -241,7 +244,7 @@ impl Layers<'_> {
     }
 
     /// The set between two positions.
-    fn between(&mut self, low: f64, high: f64) -> Between {
+    fn between(&mut self, low: f64, high: f64) -> SlabContent {
         let mut sides = [0, 1, 2].map(|k| {
             let lines = &self.grid.lines[k];
             Interval { low: lines[0], high: lines[lines.len() - 1] }
@@ -249,14 +252,14 @@ impl Layers<'_> {
         sides[self.axis] = Interval { low, high };
         let range = self.tape.range(&sides, self.room);
         if range.low > 0.0 {
-            return Between::Air;
+            return SlabContent::Air;
         }
         let free = |tape: ExprTape<f64>| {
             dependence(&tape).last().is_some_and(|all| all >> self.axis & 1 == 0)
         };
         match self.tape.pruned(self.room).is_some_and(free) {
-            true => Between::Prism,
-            false => Between::Other,
+            true => SlabContent::Prism,
+            false => SlabContent::Other,
         }
     }
 
@@ -266,9 +269,9 @@ impl Layers<'_> {
             return;
         }
         match self.between(lines[first], lines[last]) {
-            Between::Air => return,
-            Between::Prism => return kept[first + 1..last].fill(false),
-            Between::Other => {}
+            SlabContent::Air => return,
+            SlabContent::Prism => return kept[first + 1..last].fill(false),
+            SlabContent::Other => {}
         }
         let middle = (first + last) / 2;
         self.join(lines, [first, middle], kept);

@@ -401,8 +401,6 @@ fn own_leaves(capped: &Compiled<f64>) -> usize {
 const FEW_CELLS: usize = 60_000;
 /// Maximum number of cells of facets for integrals, whose finer levels follow.
 const FEW_SHARP: usize = 12_000;
-/// Nor those with more cut-off edges and intersections than this: at another position about as many are elsewhere.
-const FEW_AMISS: usize = 16;
 
 /// The facets with the fewest cut-off edges and cells whose triangles intersect others, among a few
 /// positions of the grid.
@@ -421,7 +419,7 @@ fn sharpest(
     };
     let few = if options.sharp { FEW_SHARP } else { FEW_CELLS };
     for place in 1..grid::PLACES {
-        if cost(&best) == 0 || cost(&best) > FEW_AMISS || best.cells > few {
+        if cost(&best) == 0 || best.cells > few {
             break;
         }
         let grid = Grid::at(over, step, place)?;
