@@ -167,10 +167,13 @@ class Store:
             raise FileError(
                 f"`{self.path}` is a store of layout {version}, this version reads {SCHEMA_VERSION}"
             )
-        if not writing:
-            return
-        self._db.execute("PRAGMA journal_mode = WAL")
-        self._db.execute("PRAGMA synchronous = NORMAL")
+        if writing:
+            self._db.execute("PRAGMA journal_mode = WAL")
+            self._db.execute("PRAGMA synchronous = NORMAL")
+        elif not tables:
+            # Another process is about to make it: until then it is empty.
+            self._db.close()
+            self._db = sqlite3.connect(":memory:", isolation_level=None)
         if not tables:
             self._db.executescript(
                 f"""

@@ -92,3 +92,17 @@ def test_sobol_indices_are_those_of_salib_and_of_closed_forms():
     for k, name in enumerate(problem["names"]):
         assert abs(found[name][1] - peer["ST"][k]) < 2e-3
         assert abs(found[name][0] - peer["S1"][k]) < 2e-2
+
+
+def test_a_store_that_is_being_made_is_empty(tmp_path):
+    import sqlite3
+
+    from moldloft.study.store import Store
+
+    path = tmp_path / "a.sqlite"
+    made = sqlite3.connect(path)
+    made.execute("PRAGMA journal_mode = WAL")
+    made.close()
+    assert path.exists()
+    with Store(path) as store:
+        assert list(store.outcomes()) == []
