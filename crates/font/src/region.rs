@@ -35,7 +35,7 @@ pub struct OutlineFault {
 
 /// A curve of a character.
 #[derive(Clone, Copy, Debug)]
-struct BorderSide {
+struct GlyphSide {
     curve: Bezier,
     character: usize,
 }
@@ -70,13 +70,13 @@ pub(crate) fn region(curves: &[Vec<(Bezier, usize)>]) -> Result<Vec<OutlineLoop>
     for curve in curves {
         let kept = curve
             .iter()
-            .filter_map(|(c, k)| Some(BorderSide { curve: c.simplified(size)?, character: *k }));
+            .filter_map(|(c, k)| Some(GlyphSide { curve: c.simplified(size)?, character: *k }));
         sides.extend(kept);
     }
     let sides = divided(sides, size)?;
     let climbs = climbs(&sides);
     let twins = twins(&sides, size);
-    let mut kept: Vec<BorderSide> = Vec::new();
+    let mut kept: Vec<GlyphSide> = Vec::new();
     for (k, side) in sides.iter().enumerate() {
         // Of parts that are one curve, the first stands for all.
         if twins[k].iter().any(|(j, _)| *j < k) {
@@ -85,7 +85,7 @@ pub(crate) fn region(curves: &[Vec<(Bezier, usize)>]) -> Result<Vec<OutlineLoop>
         let [left, right] = windings(&climbs, k, &twins[k]);
         match (left != 0, right != 0) {
             (true, false) => kept.push(*side),
-            (false, true) => kept.push(BorderSide { curve: side.curve.reversed(), ..*side }),
+            (false, true) => kept.push(GlyphSide { curve: side.curve.reversed(), ..*side }),
             _ => {}
         }
     }
@@ -97,7 +97,7 @@ pub(crate) fn region(curves: &[Vec<(Bezier, usize)>]) -> Result<Vec<OutlineLoop>
 }
 
 /// The parts of curves between the points where they meet others.
-fn divided(sides: Vec<BorderSide>, size: f64) -> Result<Vec<BorderSide>, OutlineFault> {
+fn divided(sides: Vec<GlyphSide>, size: f64) -> Result<Vec<GlyphSide>, OutlineFault> {
     let near = SAME * size;
     let mut cuts: Vec<Vec<f64>> = vec![Vec::new(); sides.len()];
     let boxes: Vec<[Point; 2]> = sides.iter().map(|s| s.curve.bounds()).collect();
@@ -133,7 +133,7 @@ fn divided(sides: Vec<BorderSide>, size: f64) -> Result<Vec<BorderSide>, Outline
             }
             let whole = from == 0.0 && t == 1.0;
             let curve = if whole { side.curve } else { side.curve.part(from, t) };
-            out.push(BorderSide { curve: curve.between([start, at]), ..side });
+            out.push(GlyphSide { curve: curve.between([start, at]), ..side });
             (from, start) = (t, at);
         }
     }
@@ -268,7 +268,7 @@ fn apart(parts: &[Bezier; 2], near: f64) -> bool {
     })
 }
 
-fn climbs(sides: &[BorderSide]) -> Vec<Climb> {
+fn climbs(sides: &[GlyphSide]) -> Vec<Climb> {
     let mut out = Vec::new();
     for (k, side) in sides.iter().enumerate() {
         let mut from = 0.0;
@@ -321,7 +321,7 @@ fn right_of<'a>(climbs: impl Iterator<Item = &'a Climb>, p: Point) -> i32 {
 }
 
 /// By part, the other parts that are the same curve: +1 in the same sense, -1 in the opposite one.
-fn twins(sides: &[BorderSide], size: f64) -> Vec<Vec<(usize, i32)>> {
+fn twins(sides: &[GlyphSide], size: f64) -> Vec<Vec<(usize, i32)>> {
     let near = 4.0 * SAME * size;
     let mut order: Vec<usize> = (0..sides.len()).collect();
     let left = |k: usize| sides[k].curve.bounds()[0][0];
@@ -362,7 +362,7 @@ fn windings(climbs: &[Climb], side: usize, twins: &[(usize, i32)]) -> [i32; 2] {
 }
 
 /// Curves as closed loops, each turning as far left as it can where several begin.
-fn chained(sides: Vec<BorderSide>, size: f64) -> Result<Vec<OutlineLoop>, OutlineFault> {
+fn chained(sides: Vec<GlyphSide>, size: f64) -> Result<Vec<OutlineLoop>, OutlineFault> {
     let near = 10.0 * SAME * size;
     let mut starts: Vec<usize> = (0..sides.len()).collect();
     let first = |k: usize| sides[k].curve.ends()[0];
@@ -423,8 +423,8 @@ impl OutlineLoop {
 /// Finds the loop round each hole: the smallest one that winds around it.
 fn nest(loops: &mut [OutlineLoop]) {
     let areas: Vec<f64> = loops.iter().map(OutlineLoop::area).collect();
-    let sides = |l: &OutlineLoop| -> Vec<BorderSide> {
-        l.pieces.iter().map(|c| BorderSide { curve: *c, character: 0 }).collect()
+    let sides = |l: &OutlineLoop| -> Vec<GlyphSide> {
+        l.pieces.iter().map(|c| GlyphSide { curve: *c, character: 0 }).collect()
     };
     let climbs: Vec<Vec<Climb>> = loops.iter().map(|l| climbs(&sides(l))).collect();
     for k in 0..loops.len() {

@@ -134,9 +134,9 @@ impl<C: Column> Surface<C::Scalar> for Columns<C> {
 }
 
 /// A Bézier curve; of degree 5 at most without allocation.
-pub struct Bezier<S>(pub SmallVec<[Vec3<S>; 6]>);
+pub struct ColumnBezier<S>(pub SmallVec<[Vec3<S>; 6]>);
 
-impl<S: Real> Curve<S> for Bezier<S> {
+impl<S: Real> Curve<S> for ColumnBezier<S> {
     /// De Casteljau's algorithm; exactly the first and the last point at the ends.
     fn jet(&self, t: S, order: Order) -> CurveJet<S> {
         let n = self.0.len() - 1;
