@@ -1,6 +1,6 @@
 //! Fillets between snakes, tangent to their surfaces.
 
-use super::column::{Bezier, Column, Columns};
+use super::column::{Column, ColumnBezier, Columns};
 use super::masters::{Points, along};
 use super::ribbon::{SnakePoint, ribbon, unit};
 use crate::arguments::Snake;
@@ -298,10 +298,10 @@ impl<T: Real> Fillet<T> {
 
 impl<T: Real> Column for Fillet<T> {
     type Scalar = T;
-    type Across<S: Real> = Bezier<S>;
+    type Across<S: Real> = ColumnBezier<S>;
 
-    fn across<J: Jet<T>>(&self, u: J) -> Option<Bezier<J>> {
-        Some(Bezier(self.column(u)))
+    fn across<J: Jet<T>>(&self, u: J) -> Option<ColumnBezier<J>> {
+        Some(ColumnBezier(self.column(u)))
     }
 
     fn breaks(&self) -> [Vec<f64>; 2] {
