@@ -145,10 +145,10 @@ fn meetings(curves: [&Bezier; 2], near: f64) -> Option<Vec<[f64; 2]>> {
     if curves[0].sense_of(curves[1], near).is_some() {
         return Some(vec![]);
     }
-    if let [Bezier::Line(p), Bezier::Line(q)] = curves {
-        if let Some(found) = along(p, q, near) {
-            return Some(found);
-        }
+    if let [Bezier::Line(p), Bezier::Line(q)] = curves
+        && let Some(found) = along(p, q, near)
+    {
+        return Some(found);
     }
     let mut found: Vec<[f64; 2]> = Vec::new();
     let mut pending = vec![[(0.0, 1.0), (0.0, 1.0)]];
