@@ -36,7 +36,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                         .at(m.program[align].span)
                         .expected("\"left\", \"centre\" or \"right\"")
                         .found(format!("\"{other}\""))
-                        .suggest(other, words.into_iter()));
+                        .suggest(other, words));
                 }
             };
         }
