@@ -499,7 +499,7 @@ impl Session {
 
     fn put_edits(&self, frame: &mut ReplyFrame, new: &str) {
         let edit = difference(&self.text, new);
-        let edits = edit.map(|(from, to, insert)| EditFact { from, to, insert: insert.into() });
+        let edits = edit.map(|(from, to, insert)| EditFact { from, to, insert });
         frame.put("edits", json_of(edits.into_iter().collect::<Vec<_>>()));
     }
 

@@ -324,7 +324,9 @@ fn facets_tell_where_they_are_not_the_set() {
     // Places are asked for by the members of these names: the shared edge is along z.
     let places = model.eval("touching.touching").unwrap();
     let Value::Vectors(places) = places else { panic!("{places:?}") };
-    assert!(places.planes[0].iter().all(|x| (x - 1.0).abs() < 1e-9) && places.len() > 0);
+    assert!(
+        places.planes[0].iter().all(|x| (x - 1.0).abs() < 1e-9) && !places.planes[0].is_empty()
+    );
     for (text, count) in [("ball.blunt", 0), ("ball.undecided", 0)] {
         let Value::Vectors(none) = model.eval(text).unwrap() else { panic!("{text}") };
         assert_eq!(none.len(), count, "{text}");
