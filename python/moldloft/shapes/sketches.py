@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -68,6 +68,12 @@ class SketchError(Error, ValueError):
         return str(self).rstrip() if self.replies else super().rendered
 
 
+def _restored(folder: str | os.PathLike[str] | None, text: str) -> Sketch:
+    sketch = Sketch(folder)
+    sketch.run(text)
+    return sketch
+
+
 class Sketch:
     """A session of the sketch language, with its objects.
 
@@ -104,7 +110,12 @@ class Sketch:
         # `os.path` answers for names that no system takes, too.
         if folder is not None and not os.path.isdir(os.fspath(folder)):  # noqa: PTH112
             raise FileError(f"`{folder}` is not a folder; `Sketch.load(path)` reads a file")
+        self._folder = folder
         self._session = _core.SketchSession(None if folder is None else utf8_path(folder))
+
+    def __reduce__(self) -> tuple[Callable[..., Sketch], tuple[Any, ...]]:
+        """Copies and pickles hold the commands that reproduce the objects, without the history."""
+        return _restored, (self._folder, self.text)
 
     @property
     def session(self) -> _core.SketchSession:

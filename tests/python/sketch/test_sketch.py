@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import copy
 import dataclasses
 import json
 import os
+import pickle
 import random
 import re
 import signal
@@ -259,6 +261,18 @@ def test_the_class(tmp_path):
     with pytest.raises(UnknownNameError):
         _ = Sketch().volume
     assert isinstance(caught.value, (moldloft.Error, ValueError))
+
+
+@pytest.mark.parametrize("name", VOLUMES)
+def test_copies_and_pickles_are_the_same_sketch(name):
+    sketch = Sketch.load(EXAMPLES / f"{name}.skt", strict=False)
+    for other in (pickle.loads(pickle.dumps(sketch)), copy.deepcopy(sketch), copy.copy(sketch)):
+        assert other.text == sketch.text
+        assert (other.volume, other.active) == (sketch.volume, sketch.active)
+        dimension, value = next(iter(sketch.dimensions.items()))
+        before = sketch.text
+        other[dimension] = 1.01 * value
+        assert sketch.text == before != other.text
 
 
 def test_gradients_are_differences():
