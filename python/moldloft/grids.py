@@ -342,7 +342,7 @@ def encoded(
     grids
         Arrays (ni, nj, 3), or (ni, nj, nk, 3) for Plot3D and VTK.
     names
-        Names of the zones of a CGNS file.
+        Names of the grids, for CGNS and VTK.
 
     Returns
     -------

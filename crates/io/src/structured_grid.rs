@@ -167,11 +167,15 @@ mod tests {
         let b = body();
         assert_eq!(b.at([59, 19, 0]), b.layer(0)[1199]);
         assert_eq!(b.planes[0][59], 3.0);
-        let files = vtk::grid_files(std::slice::from_ref(&b), "body").unwrap();
+        let files = vtk::grid_files(std::slice::from_ref(&b), &["hull".into()], "body").unwrap();
         assert_eq!((files.len(), files[0].name.as_str()), (1, "body.vts"));
         let text = String::from_utf8_lossy(&files[0].bytes).into_owned();
         assert!(text.contains("WholeExtent=\"0 59 0 19 0 0\""));
-        assert_eq!(vtk::grid_files(&[b.clone(), b], "two").unwrap()[0].name, "two.vtm");
-        assert!(matches!(vtk::grid_files(&[], "none"), Err(WriteError::NoGrid { .. })));
+        assert_eq!(
+            vtk::grid_files(&[b.clone(), b], &["hull".into(), "keel".into()], "two").unwrap()[2]
+                .name,
+            "two-2-keel.vts"
+        );
+        assert!(matches!(vtk::grid_files(&[], &[], "none"), Err(WriteError::NoGrid { .. })));
     }
 }

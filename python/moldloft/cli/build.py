@@ -28,7 +28,7 @@ from moldloft.cli.console import (
 )
 from moldloft.display import worst_panel
 from moldloft.errors import Error, ModelError
-from moldloft.hydro.hydrostatics import Hydrostatics
+from moldloft.hydro.hydrostatics import Hydrostatics, rounded_to_bound
 from moldloft.models import Model
 from moldloft.shapes.mesh import Mesh, Patch
 from moldloft.text_table import table, terminal_width
@@ -56,9 +56,10 @@ def add(parser: argparse.ArgumentParser) -> None:
     files.add_argument(
         "-o",
         "--output",
-        metavar="DIR",
+        metavar="PATH",
         default=".",
-        help="folder for the files; default: the current one; - is standard output, for one file",
+        help="folder for the files; default: the current one; for one format of one model also the "
+        "file, such as hull.stl, or - for standard output",
     )
     add_name(files)
     files.add_argument(
@@ -139,6 +140,9 @@ def run(options: argparse.Namespace) -> int:
     """Builds once, or at every save."""
     if options.output == "-" and (len(options.to) != 1 or options.watch or options.json):
         raise Error("-o - takes one format, without --json and --watch: its file is the output")
+    if options.output != "." and not options.to:
+        raise Error("-o without --to writes nothing\nhelp: name the formats, such as --to stl")
+    _name_of_file(options)
     if not options.watch:
         return each_model(options, _build)
     (options.model,) = options.models[:1]
@@ -160,6 +164,17 @@ def run(options: argparse.Namespace) -> int:
         print(f"watching {', '.join(sources)}", file=sys.stderr)
         while not watch.changed():
             time.sleep(_POLL_SECONDS)
+
+
+def _name_of_file(options: argparse.Namespace) -> None:
+    """Divides an output that is a file of the one format into its folder and its stem."""
+    from moldloft.exchange.files import file_name
+
+    path = Path(options.output)
+    if len(options.to) != 1 or len(options.models) != 1 or options.name is not None:
+        return
+    if path.suffix and file_name(path.stem, options.to[0]) == path.name and not path.is_dir():
+        options.output, options.name = str(path.parent), path.stem
 
 
 def _build_watched(options: argparse.Namespace) -> list[str]:
@@ -421,7 +436,7 @@ def _main_figures(floating: Hydrostatics) -> str:
     sides = {"both": "both sides", "one": "one side", "whole": "the whole body"}[floating.sides]
     words = []
     for name in _MAIN:
-        value = getattr(floating, name)
+        value = rounded_to_bound(floating, name)
         if value is not None:
             words.append(f"{name} {value:.5g} {floating.unit(name)}".rstrip())
     text = f"hydrostatics at z = {_number(floating.level)}, {sides} (all: -v, or moldloft hydro)"
@@ -498,7 +513,8 @@ def _floating(floating: Hydrostatics) -> str:
     hidden |= {"bounds", "lolls", "waterplane_product", "accuracy"}
     figures = {k: v for k, v in floating.as_dict().items() if k not in hidden}
     width = max(map(len, figures))
-    for name, value in figures.items():
+    for name in figures:
+        value = rounded_to_bound(floating, name)
         bound = f" ± {floating.bounds[name]:.1g}" if name in floating.bounds else ""
         text = f"{_number(value)} {floating.unit(name)}".rstrip()
         lines.append(f"  {name.ljust(width)}  {text}{bound}")

@@ -18,7 +18,12 @@ from moldloft.cli.console import (
     water,
 )
 from moldloft.errors import Error
-from moldloft.hydro.hydrostatics import Hydrostatics, HydrostaticTable, RightingCurve
+from moldloft.hydro.hydrostatics import (
+    Hydrostatics,
+    HydrostaticTable,
+    RightingCurve,
+    rounded_to_bound,
+)
 from moldloft.text_table import table, terminal_width
 from moldloft.units import header, shown
 
@@ -461,9 +466,8 @@ def _one(flotation: Hydrostatics) -> str:
     lines = [f"hydrostatics, {sides}"]
     figures = {k: v for k, v in flotation.as_dict().items() if k not in _HIDDEN}
     width = max(map(len, figures))
-    for name, value in figures.items():
-        if name in flotation.bounds:
-            value = _within(value, flotation.bounds[name])
+    for name in figures:
+        value = rounded_to_bound(flotation, name)
         text = f"{value:.8g}" if isinstance(value, float) else str(value)
         if name in _ANGLES:
             text = f"{math.degrees(value):.8g} degrees"
@@ -478,13 +482,6 @@ def _one(flotation: Hydrostatics) -> str:
     return "\n".join(lines)
 
 
-def _within(value: float, bound: float) -> float:
-    """The value without digits far below its bound."""
-    if not 0 < bound < math.inf:
-        return value
-    return round(value, 1 - math.floor(math.log10(bound))) + 0.0
-
-
 def _table(rows: HydrostaticTable | RightingCurve) -> str:
     if isinstance(rows, HydrostaticTable):
         names = [n for n in _TABLE if any(getattr(row, n) is not None for row in rows)]
@@ -497,9 +494,11 @@ def _table(rows: HydrostaticTable | RightingCurve) -> str:
     for row in rows:
         cells = [f"{math.degrees(row.heel):.4g}", _number(row.gz), _number(row.righting_moment)]
         cells += [f"{math.degrees(row.trim):.4g}", _number(row.draft_mid), _number(row.freeboard)]
-        body.append([*cells, row.status])
+        body.append([*cells, "floods" if row.open_edges else row.status])
     text = table(names, body, left=0, width=terminal_width())
     heel, arm = rows.largest
+    if math.isnan(arm):
+        return text
     text += f"\nlargest arm {arm:.6g} at {math.degrees(heel):.4g} degrees"
     if rows.vanishing is not None:
         text += f"\nit vanishes at {math.degrees(rows.vanishing):.4g} degrees"
@@ -507,4 +506,4 @@ def _table(rows: HydrostaticTable | RightingCurve) -> str:
 
 
 def _number(value: float | None) -> str:
-    return "-" if value is None else f"{value:.6g}"
+    return "-" if value is None or math.isnan(value) else f"{value:.6g}"

@@ -386,7 +386,8 @@ class Floating:
         if water is None and any(row[0] == "displacement" for row in rows):
             raise Error(
                 "a mass floats in water of a density\n"
-                'help: give density="salt", "fresh", or mass per volume in the model\'s units'
+                'help: state density="salt", "fresh" or mass per volume in the model\'s units; '
+                "in the command: --density salt"
             )
         answers = self._document.floating(
             rows, water or 1.0, gravity, centre, sides, names_of(by), accuracy, of_weights, flooded
@@ -548,7 +549,8 @@ class Floating:
         if water is None:
             raise Error(
                 "a mass floats in water of a density\n"
-                'help: give density="salt", "fresh", or mass per volume in the model\'s units'
+                'help: state density="salt", "fresh" or mass per volume in the model\'s units; '
+                "in the command: --density salt"
             )
         points = [
             Opening(name, (float(x), float(y), float(z)))

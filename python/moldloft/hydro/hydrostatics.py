@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
     from moldloft.models import Model
 
-__all__ = ["HydrostaticTable", "Hydrostatics", "RightingCurve"]
+__all__ = ["HydrostaticTable", "Hydrostatics", "RightingCurve", "rounded_to_bound"]
 
 
 #: Figures that must be known to the accuracy of themselves; moments are known to that of the body's
@@ -456,6 +456,14 @@ class Hydrostatics:
         return replace(self, **changed)
 
 
+def rounded_to_bound(flotation: Hydrostatics, name: str) -> Any:
+    """A figure for print: without digits far below its bound."""
+    value, bound = getattr(flotation, name), flotation.bounds.get(name, 0.0)
+    if not isinstance(value, float) or not 0 < bound < math.inf:
+        return value
+    return round(value, 1 - math.floor(math.log10(bound))) + 0.0
+
+
 _NUMBERS = [
     f.name
     for f in fields(Hydrostatics)
@@ -696,9 +704,14 @@ class RightingCurve(_Rows):
 
     @property
     def largest(self) -> tuple[float, float]:
-        """The heel (in radians) and the arm of the row with the largest arm."""
-        best = max(self.rows, key=lambda row: row.gz if row.gz is not None else -math.inf)
-        return best.heel, best.gz if best.gz is not None else math.nan
+        """The heel (in radians) and the arm of the row with the largest arm.
+
+        Rows at which water enters have no arm; both are NaN if no row has one.
+        """
+        known = [(row.gz, row.heel) for row in self.rows if row.gz is not None]
+        known = [(arm, heel) for arm, heel in known if not math.isnan(arm)]
+        arm, heel = max(known, key=lambda pair: pair[0], default=(math.nan, math.nan))
+        return heel, arm
 
     @property
     def vanishing(self) -> float | None:

@@ -23,8 +23,8 @@ fn write(export: &mut Export<'_>) -> Result<Vec<NamedFile>, ExportFailure> {
 
 fn encode_grids(
     grids: &[StructuredGrid],
-    _: &[String],
+    names: &[String],
     name: &FileName<'_>,
 ) -> Result<Vec<NamedFile>, WriteError> {
-    Ok(name.renamed("vts", vtk::grid_files(grids, name.stem())?))
+    Ok(name.renamed("vts", vtk::grid_files(grids, names, name.stem())?))
 }

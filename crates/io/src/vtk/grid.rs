@@ -71,19 +71,21 @@ pub fn structured_files(
     Ok(indexed(grids.iter().map(one).collect(), stem))
 }
 
-/// Grids of points as `.vts` files: `stem.vts` for one; for several `stem.vtm`, which is first and
-/// names the others.
+/// Grids of points as `.vts` files, with a name each: `stem.vts` for one; for several `stem.vtm`,
+/// which is first and names the others.
 ///
 /// # Errors
 /// No grids; coordinates that are not finite.
-pub fn grid_files(blocks: &[StructuredGrid], stem: &str) -> Result<Vec<NamedFile>, WriteError> {
+pub fn grid_files(
+    blocks: &[StructuredGrid],
+    names: &[String],
+    stem: &str,
+) -> Result<Vec<NamedFile>, WriteError> {
     StructuredGrid::check(blocks, f64::MAX)?;
-    let one = |(k, block): (usize, &StructuredGrid)| {
-        let name = format!("grid {}", k + 1);
-        let bytes = of_points(block, Some(("grid_name", &name)), &[]);
-        (name, bytes)
+    let one = |(block, name): (&StructuredGrid, &String)| {
+        (name.clone(), of_points(block, Some(("grid_name", name)), &[]))
     };
-    Ok(indexed(blocks.iter().enumerate().map(one).collect(), stem))
+    Ok(indexed(blocks.iter().zip(names).map(one).collect(), stem))
 }
 
 /// One grid of points as a `.vts` file, with fields in the order i fastest. Fields of other lengths

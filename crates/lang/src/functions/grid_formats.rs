@@ -205,8 +205,8 @@ fn plot3d_file(file: GridFile<'_>) -> Result<EncodedFiles, Diagnostic> {
 fn vts(file: GridFile<'_>) -> Result<EncodedFiles, Diagnostic> {
     option(&file, "")?;
     let folder = file.path.rfind('/').map_or("", |k| &file.path[..=k]);
-    let (blocks, _) = grids(file.blocks);
-    let written = vtk::grid_files(&blocks, stem(file.path)).map_err(cannot)?;
+    let (blocks, names) = grids(file.blocks);
+    let written = vtk::grid_files(&blocks, &names, stem(file.path)).map_err(cannot)?;
     let named = |part: vtk::NamedFile| (format!("{folder}{}", part.name), part.bytes);
     Ok(written.into_iter().map(named).collect())
 }
