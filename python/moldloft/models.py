@@ -663,7 +663,12 @@ class Model(Differentiable, Floating, Writable, Adapted):
         Returns
         -------
         list of Diagnostic
-            Empty when no surface is found to do so, or the skin has no body.
+            Empty when no surface is found to do so.
+
+        Raises
+        ------
+        ModelError
+            If the skin is that of no body: a mirrored model that shows both sides of its plane.
 
         Examples
         --------

@@ -624,6 +624,20 @@ impl Document {
         }
     }
 
+    /// The fault of a step after the run, at the declaration of the object that it concerns.
+    pub(crate) fn at_object(&self, fault: &CallError) -> Diagnostic {
+        let diagnostic = unplaced(fault);
+        let Some(object) = fault.related.first().and_then(|(key, _)| self.plain.graph.get(*key))
+        else {
+            return diagnostic;
+        };
+        let diagnostic = diagnostic.object(&*object.name);
+        match self.declared_at(&self.plain, object) {
+            Some(span) => diagnostic.at(span),
+            None => diagnostic,
+        }
+    }
+
     /// Division counts at the parameter values of the text, when a parameter has another value:
     /// counts that follow from lengths do not change with parameters.
     fn nominal(&mut self) -> Option<Nominal> {
@@ -881,7 +895,7 @@ impl Document {
     pub fn panelled_within(&mut self, fineness: &Fineness) -> Result<Arc<Panelled>, Diagnostic> {
         self.complete().map_err(|mut faults| faults.swap_remove(0))?;
         let graph = &self.plain.graph;
-        let panelling = Panelling::within(graph, fineness).map_err(|f| unplaced(&f))?;
+        let panelling = Panelling::within(graph, fineness).map_err(|f| self.at_object(&f))?;
         let mesh = panelling.own_mesh().ok_or_else(|| {
             let none = Diagnostic::error("no-mesh", "the model has no panels");
             self.or_spent(none.help("show a surface"))
@@ -915,13 +929,13 @@ impl Document {
         };
         let graph = &self.plain.graph;
         let mut panelling =
-            Panelling::renewed(graph, nominal.as_ref(), before).map_err(|f| unplaced(&f))?;
+            Panelling::renewed(graph, nominal.as_ref(), before).map_err(|f| self.at_object(&f))?;
         if panelling.is_measured() && nominal.is_none() {
             nominal = self.nominal();
             if nominal.is_some() {
                 let graph = &self.plain.graph;
                 panelling = Panelling::renewed(graph, nominal.as_ref(), before)
-                    .map_err(|f| unplaced(&f))?;
+                    .map_err(|f| self.at_object(&f))?;
             }
         }
         let mesh = panelling.own_mesh().ok_or_else(|| {

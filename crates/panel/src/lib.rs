@@ -42,7 +42,7 @@ pub use contour_integrals::{ContourPiece, body_integrals, contour_piece};
 pub use draft::divisions;
 pub use notes::{ChainStep, PanelNote};
 pub use outlines::{FaceOutline, OutlineCurve, OutlineSide};
-pub use panelling::{MOST_PANELS, Panelling, too_many_panels};
+pub use panelling::{MOST_PANELS, Panelling};
 pub use shared_edges::{EdgeStretch, PatchEdge};
 pub use skin::Skin;
 pub use topology::Nominal;

@@ -39,17 +39,21 @@ const MAX_ROUNDS: usize = 4;
 /// Maximum number of panels of a model.
 pub const MOST_PANELS: u64 = 20_000_000;
 
-/// The error of a model with `count` panels.
-pub fn too_many_panels(count: u64) -> CallError {
-    CallError::new("too-many-panels", format!("{count} panels are too many"))
-        .expected(format!("at most {MOST_PANELS}"))
-        .found(count.to_string())
-        .help("lower the divisions of the surfaces")
+/// The error of a model with `count` panels, at the object `name` that has most of them, `most`.
+fn too_many_panels(graph: &Graph<f64>, count: u64, name: &str, most: u64) -> CallError {
+    CallError::new(
+        "too-many-panels",
+        format!("{count} panels are too many, {most} of them of `{name}`"),
+    )
+    .expected(format!("at most {MOST_PANELS}"))
+    .found(count.to_string())
+    .help(format!("lower the divisions of `{name}`"))
+    .related(graph.find(name), "most of the panels")
 }
 
 /// Refuses a patch with positions that are not finite, such as the limit at a pole that an object
 /// does not take.
-fn check_finite(name: &str, points: &[Vec3]) -> Result<(), CallError> {
+fn check_finite(graph: &Graph<f64>, name: &str, points: &[Vec3]) -> Result<(), CallError> {
     // Zero times a number is zero, times infinity or NaN it is NaN.
     let sum: f64 = points.iter().map(|p| p.x * 0.0 + p.y * 0.0 + p.z * 0.0).sum();
     if sum == 0.0 {
@@ -61,7 +65,8 @@ fn check_finite(name: &str, points: &[Vec3]) -> Result<(), CallError> {
         .expected("finite coordinates")
         .found("NaN or infinity")
         .help("look for edges of length zero and zero tangents in its parents")
-        .help(format!("or hide it: {name}(..., visible = 0)")))
+        .help(format!("or hide it: {name}(..., visible = 0)"))
+        .related(graph.find(name), "the surface"))
 }
 
 /// Distance of a panel edge, or a whole patch, from a coordinate plane, relative to the model's
@@ -196,10 +201,13 @@ impl Panelling {
         let knuckles = knuckles.map(|d| (d.object.key, d.knuckles.clone())).collect();
         let count = |frame: &PatchTopology| frame.divisions[0] as u64 * frame.divisions[1] as u64;
         let mut bodies = triangle_bodies::bodies(graph, fineness)?;
-        let total = made.structure.patches.iter().map(count).sum::<u64>()
-            + bodies.iter().map(MeshedBody::panels).sum::<u64>();
-        if total > MOST_PANELS {
-            return Err(too_many_panels(total));
+        let of_patches = made.structure.patches.iter().map(|patch| (count(patch), &patch.name));
+        let counts = of_patches.chain(bodies.iter().map(|body| (body.panels(), &body.name)));
+        let total = counts.clone().map(|(count, _)| count).sum::<u64>();
+        if let Some((most, name)) = counts.max_by_key(|(count, _)| *count)
+            && total > MOST_PANELS
+        {
+            return Err(too_many_panels(graph, total, name, most));
         }
         graph.budget().grow(total * BYTES)?;
         let before = before.filter(|b| *b.structure == made.structure);
@@ -222,7 +230,7 @@ impl Panelling {
         let raw = evaluated.into_iter().collect::<Option<Vec<_>>>();
         let raw = raw.ok_or_else(|| graph.budget().poll().err().unwrap_or(Spent::Cancelled))?;
         for (patch, points) in structure.patches.iter().zip(&raw) {
-            check_finite(&patch.name, points)?;
+            check_finite(graph, &patch.name, points)?;
         }
         let mut points = raw.clone();
         let size = points.iter().flat_map(|p| p.iter()).fold(Box3::EMPTY, |b, &p| b.including(p));

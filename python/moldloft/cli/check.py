@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 from typing import TYPE_CHECKING, Any
 
+from moldloft import ModelError
 from moldloft.cli.console import (
     Progress,
     add_model,
@@ -57,7 +58,10 @@ def _check(options: argparse.Namespace) -> tuple[int, Any]:
             diagnostics += model.junctions()
         if mesh is not None and mesh.patches:
             diagnostics += model.inner_skins()
-            diagnostics += model.folded_surfaces()
+            try:
+                diagnostics += model.folded_surfaces()
+            except ModelError as error:
+                diagnostics += error.diagnostics
         if not options.quality:
             mesh = None
     errors = sum(d.is_error for d in diagnostics)

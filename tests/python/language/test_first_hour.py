@@ -87,6 +87,10 @@ def test_a_mesh_with_a_pole_opens_everywhere(tmp_path: Path) -> None:
         ("build hull.sdl --to xyzz", 2, "did you mean `xyz`"),
         ("check twice.sdl", 1, "mirrored-twice"),
         ("build twice.sdl --to stl", 1, "mirrored-twice"),
+        ("check cube.sdl", 1, "mirrored-twice"),
+        ("hydro cube.sdl", 1, "mirrored-twice"),
+        ("check part.sdl", 1, "it is not a program"),
+        ("build hull.sdl -o hull.stl", 1, "--to stl"),
         ("check hull.gdf", 1, "it contains no panels"),
         ("check hull.txt", 1, "is not a model: expected"),
         ("check furlong.sdl", 1, "furlong"),
@@ -104,6 +108,10 @@ def test_a_first_mistake_is_explained(
     if "symmetry" not in twice:
         twice = 'Model info(symmetry = "y");\n' + twice
     (tmp_path / "twice.sdl").write_text(twice, encoding="utf-8")
+    cube = "set s = cuboid({-1, -1, -1}, {1, 1, 1}); SetBody b(s, {-2, -2, -2}, {2, 2, 2});"
+    (tmp_path / "cube.sdl").write_text('Model info(symmetry = "y");\n' + cube, encoding="utf-8")
+    (tmp_path / "part.sdl").write_text('load "part.step";', encoding="utf-8")
+    (tmp_path / "part.step").write_text("ISO-10303-21;\nHEADER;\nENDSEC;\n", encoding="utf-8")
     (tmp_path / "furlong.sdl").write_text('Model info(units = "furlong");')
     (tmp_path / "hull.gdf").write_text("a gdf file\n1 9.8\n0 1\n0\n")
     (tmp_path / "hull.txt").write_text(text, encoding="utf-8")

@@ -64,8 +64,7 @@ impl Document {
             return Ok(blocked.clone());
         }
         let graph = &self.plain.graph;
-        let blocking = Blocking::new(graph)
-            .map_err(|f| moldloft_lang::source::fault_location::unplaced(&f))?;
+        let blocking = Blocking::new(graph).map_err(|f| self.at_object(&f))?;
         if blocking.is_empty() {
             return Err(Diagnostic::error("no-blocks", "the model has no solids")
                 .help("declare a solid, such as RuledSolid S(s1, s2)"));

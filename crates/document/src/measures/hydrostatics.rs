@@ -108,11 +108,10 @@ impl Document {
     /// fold more than once.
     ///
     /// # Errors
-    /// None: a skin without a body has no such warnings.
+    /// If the skin is not that of a body: see [`Document::hydrostatics`].
     pub fn folded_surfaces(&mut self) -> Result<Vec<Diagnostic>, Diagnostic> {
         let accuracy = self.bodied.as_ref().map_or(USUAL_ACCURACY, |known| known.accuracy);
-        // Without a body its own fault is reported where it is measured.
-        let Ok(bodied) = self.bodied(accuracy) else { return Ok(Vec::new()) };
+        let bodied = self.bodied(accuracy)?;
         let report = |(side, at): &(usize, Vec3)| {
             let name = bodied.skin.side(*side);
             let place = format!("({:.6}, {:.6}, {:.6})", at.x, at.y, at.z);

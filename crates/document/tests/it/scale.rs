@@ -195,6 +195,8 @@ fn too_many_divisions_and_panels_are_refused() {
     let mut document = timed("a million squared", || sound(&text));
     let fault = timed("panelling", || document.panelled().unwrap_err());
     assert_eq!(fault.id, "too-many-panels");
+    assert_eq!(fault.object.as_deref(), Some("S"));
+    assert!(fault.primary.is_some());
     assert!(document.eval("S.area").is_ok(), "a measure of the surface needs no panels");
     for text in ["mesh.area", "hydrostatics.volume"] {
         let faults = timed(text, || document.eval(text).unwrap_err());

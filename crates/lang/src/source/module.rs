@@ -269,6 +269,18 @@ impl Modules {
             None => loader.sources.add(read.name.clone(), text),
         };
         let (program, found) = sdl::parse(text, file);
+        let ending = std::path::Path::new(&read.name).extension();
+        let named_as_program =
+            ending.is_none_or(|e| e.eq_ignore_ascii_case("sdl") || e.eq_ignore_ascii_case("ms2"));
+        if !named_as_program && found.iter().any(Diagnostic::is_error) {
+            let message = format!("cannot read `{path}`: it is not a program");
+            return Err(Diagnostic::error("cannot-read", message)
+                .at(span)
+                .expected("a program (.sdl), a model file (.ms2) or a sketch (.skt)")
+                .help(format!(
+                    "`moldloft convert {path} -o NAME.sdl` makes a program of a CAD file, a mesh or a table"
+                )));
+        }
         let at = self.add(&read.name, program, loader.registry, known);
         self.get_mut(at).faults = found;
         Ok(at)
