@@ -31,7 +31,7 @@ ENGINE := python/moldloft/workbench/wasm/engine.wasm.xz
 ENGINE_PROFILE ?= engine
 WASM := wasm32-unknown-unknown
 
-.PHONY: setup demo optimised web engine living quick test check bits reference site release soak changes fuzz clean help
+.PHONY: setup demo optimised web engine living quick test check bits stubs site release soak changes fuzz clean help
 
 help: ## this list
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):[^#]*## /\1\t/'
@@ -134,9 +134,7 @@ check: setup $(if $(WEB),$(NODE_MODULES)) ## formatting, lints, links of the doc
 	@$(BIN)/mypy --no-error-summary
 	@$(if $(WEB),cd web && npm run --silent check,echo "without Node.js the page is not checked")
 
-reference: $(VENV)/.installed ## rewrites docs/reference.md, the pictures of kinds and the stubs from the declarations
-	@$(BIN)/moldloft doc --markdown > docs/reference.md
-	@$(BIN)/moldloft doc --pictures docs/kinds
+stubs: $(VENV)/.installed ## rewrites the stubs from the declarations
 	@$(BIN)/python -m moldloft.stubs
 
 site: $(VENV)/.with-tests ## the documentation with living models, in out/site

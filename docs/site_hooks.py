@@ -91,8 +91,10 @@ def on_files(files: Any, config: Any) -> Any:
     """Adds the generated pages, the linked sources and the changes to the site."""
     from mkdocs.structure.files import File
 
-    for name, text in {**_reference(), **_diagnostics(), "changes.md": _changes()}.items():
-        files.append(File.generated(config, name, content=text))
+    reference, pictures = _reference()
+    pages = {**reference, **_diagnostics(), "changes.md": _changes()}
+    for name, content in {**pages, **pictures}.items():
+        files.append(File.generated(config, name, content=content))
 
     linked = set()
     for file in files.documentation_pages():
@@ -114,22 +116,23 @@ def _late(boost: float) -> str:
     return f"---\nsearch:\n  boost: {boost}\n---\n\n"
 
 
-def _reference() -> dict[str, str]:
-    """A page for each kind and function, and the index of terms."""
-    from moldloft.cli.doc import has_picture
-    from moldloft.cli.reference_page import entry_pages, terms_page
+def _reference() -> tuple[dict[str, str], dict[str, bytes]]:
+    """The reference: its index, a page for each kind and function, the index of terms, and pictures.
+
+    Pictures take a minute; they are drawn with the living pages.
+    """
+    from moldloft.cli.doc import pictures
+    from moldloft.cli.reference_page import entry_pages, index_page, terms_page
     from moldloft.language import reference
     from moldloft.library import routines
 
     rows, libraries = reference(), routines()
-
-    def pictured(row: dict[str, Any]) -> bool:
-        there = (ROOT / "docs" / "kinds" / f"{row['name']}.png").is_file()
-        return there and has_picture(row)
-
-    pages = entry_pages(rows, pictured, libraries)
+    drawn = dict(pictures([*rows, *libraries])) if LIVING else {}
+    pages = entry_pages(rows, lambda row: row["name"] in drawn, libraries)
     found = {f"reference/{name}.md": _late(0.01) + text for name, text in pages.items()}
-    return {**found, "terms.md": terms_page([*rows, *libraries])}
+    found["reference.md"] = index_page(rows, libraries)
+    found["terms.md"] = terms_page([*rows, *libraries])
+    return found, {f"kinds/{name}.png": image for name, image in drawn.items()}
 
 
 def _changes() -> str:
@@ -151,19 +154,6 @@ def _diagnostics() -> dict[str, str]:
     }
 
 
-def _index_of_reference(markdown: str) -> str:
-    """The reference with a link from each row to its page."""
-    seen: dict[str, int] = {}
-
-    def linked(found: re.Match[str]) -> str:
-        name = found[1].lower()
-        count = seen[name] = seen.get(name, -1) + 1
-        return f"| [`{found[1]}`](reference/{f'{name}_{count}' if count else name}.md) |"
-
-    head, title, rest = markdown.partition("\n## Points\n")
-    return head + title + re.sub(r"^\| `(\w+)` \|", linked, rest, flags=re.M)
-
-
 def _index_of_diagnostics(markdown: str) -> str:
     """The list of diagnostics, each with the first sentence of its meaning."""
     head = markdown.partition("\n## ")[0]
@@ -179,8 +169,6 @@ def _index_of_diagnostics(markdown: str) -> str:
 def on_page_markdown(markdown: str, page: Any, config: Any, files: Any) -> str:
     """Links the indexes to the pages of their entries, and sources to their copies in the site."""
     here = page.file.src_uri
-    if here == "reference.md":
-        markdown = _index_of_reference(markdown)
     if here == "diagnostics.md":
         markdown = _index_of_diagnostics(markdown)
     up = "../" * here.count("/")

@@ -178,7 +178,7 @@ def check(changes: list[Change]) -> None:
     run("make", "setup")
     plain = [(each.row, each.field, each.to) for each in changes]
     run(".venv/bin/python", "-c", f"CHANGES = {plain!r}\n{CHECK}")
-    run("make", "reference")
+    run("make", "stubs")
     run(".venv/bin/python", "-m", "pytest", "--quiet", "tests/python/house/test_faces.py")
     stubs = "".join(path.read_text() for path in ROOT.glob("python/moldloft/**/*.pyi"))
     for each in changes:

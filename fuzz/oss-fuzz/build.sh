@@ -10,9 +10,9 @@ for source in fuzz/fuzz_targets/*.rs; do
     fi
 done
 cp fuzz/dictionaries/sketch.dict "$OUT/sketch.dict"
-# Names of kinds and functions, from the headings of the reference.
+# Names of kinds and functions, from the stubs.
 for name in document expressions model_file sdl_format sdl_parse sdl_run; do
-    sed -n 's/^### \([A-Za-z0-9_]*\)$/"\1"/p' docs/reference.md | sort -u > "$OUT/$name.dict"
+    sed -n 's/^def \([A-Za-z0-9_]*\)($/"\1"/p' python/moldloft/{kinds,functions}.pyi | sort -u > "$OUT/$name.dict"
 done
 for name in engine_messages lsp_frames; do
     cp fuzz/dictionaries/messages.dict "$OUT/$name.dict"

@@ -1,4 +1,4 @@
-# Made by `make reference` from the declarations in `crates/`; not edited by hand.
+# Made by `make stubs` from the declarations in `crates/`; not edited by hand.
 """The kinds of entities, for models written in Python."""
 
 from collections.abc import Sequence

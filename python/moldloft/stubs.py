@@ -1,7 +1,7 @@
 """The types of kinds and functions, written from the registry.
 
 ``python -m moldloft.stubs`` writes ``kinds.pyi``, ``functions.pyi`` and ``implicit/rows.pyi``
-beside this file (``make reference`` runs it). They give type checkers the arguments of each kind
+beside this file (``make stubs`` runs it). They give type checkers the arguments of each kind
 and function, and editors its documentation.
 """
 
@@ -17,7 +17,7 @@ from moldloft.language import attributes, page, python_name, reference
 
 __all__ = ["functions_stub", "kinds_stub", "solids_stub"]
 
-_HEAD = '''# Made by `make reference` from the declarations in `crates/`; not edited by hand.
+_HEAD = '''# Made by `make stubs` from the declarations in `crates/`; not edited by hand.
 """{title}"""
 
 from collections.abc import Sequence
@@ -235,7 +235,7 @@ def functions_stub() -> str:
     return _stub("Functions of the language, for models that are written in Python.", rows)
 
 
-_SOLIDS_HEAD = '''# Made by `make reference` from the declarations in `crates/`; not edited by hand.
+_SOLIDS_HEAD = '''# Made by `make stubs` from the declarations in `crates/`; not edited by hand.
 """Functions of fields and sets, made from the rows of the language."""
 
 from collections.abc import Sequence

@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 import argparse
+from collections.abc import Iterator
 from textwrap import fill, wrap
 from typing import Any
 
 from moldloft.cli.console import print_json
-from moldloft.cli.reference_page import example_lines, markdown, signature, synonyms
+from moldloft.cli.reference_page import example_lines, signature, synonyms
 from moldloft.errors import UnknownNameError
 from moldloft.library import picture, pictured, routines
 from moldloft.spelling import nearest
 from moldloft.text_table import table, terminal_width
 
-__all__ = ["add", "has_picture", "run"]
+__all__ = ["add", "pictures", "run"]
 
 
 def add(parser: argparse.ArgumentParser) -> None:
@@ -29,7 +30,6 @@ def add(parser: argparse.ArgumentParser) -> None:
         "--list", action="store_true", help="list all of them, with class and fields"
     )
     parser.add_argument("--json", action="store_true", help="the same as data")
-    parser.add_argument("--markdown", action="store_true", help="the index of the reference")
     parser.add_argument(
         "--pictures", metavar="DIR", help="a PNG of the example of each kind, or of NAME"
     )
@@ -42,9 +42,6 @@ def run(options: argparse.Namespace) -> int:
 
     rows = reference()
     libraries = routines()
-    if options.markdown:
-        print(markdown(rows, libraries), end="")
-        return 0
     if options.pictures and options.name is None:
         _draw([*rows, *libraries], options.pictures)
         return 0
@@ -147,34 +144,36 @@ _SHAPES = {
 }  # fmt: skip
 
 
-def has_picture(row: dict[str, Any]) -> bool:
-    """True if there is a picture of the example of an entry.
-
-    Parameters
-    ----------
-    row
-        The entry.
-    """
+def _has_picture(row: dict[str, Any]) -> bool:
     if "library" in row:
         return pictured(row) is not None
     return bool(row["is_kind"] and row["example"] and row["class"] in _SHAPES)
 
 
-def _draw(rows: list[dict[str, Any]], folder: str) -> None:
-    """Draws the examples of the kinds, each kind standing out in its own."""
-    from pathlib import Path
+def pictures(rows: list[dict[str, Any]]) -> Iterator[tuple[str, bytes]]:
+    """The names of entries whose examples have a shape, each with its picture as PNG.
 
+    Parameters
+    ----------
+    rows
+        The entries.
+    """
     import moldloft
-    from moldloft.exchange.files import Output, commit
 
-    outputs = []
-    for row in filter(has_picture, rows):
+    for row in filter(_has_picture, rows):
         if "library" in row:
-            outputs.append(Output(f"{row['name']}.png", picture(row) or b""))
+            yield row["name"], picture(row) or b""
             continue
         model = moldloft.loads(row["example"], name=f"{row['name']}.sdl")
-        portrait = model.kind_picture(row["name"], 360, 240)
-        outputs.append(Output(f"{row['name']}.png", portrait))
+        yield row["name"], model.kind_picture(row["name"], 360, 240)
+
+
+def _draw(rows: list[dict[str, Any]], folder: str) -> None:
+    from pathlib import Path
+
+    from moldloft.exchange.files import Output, commit
+
+    outputs = [Output(f"{name}.png", image) for name, image in pictures(rows)]
     commit(Path(folder), outputs)
     print(f"{len(outputs)} pictures in {folder}")
 

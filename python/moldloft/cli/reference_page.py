@@ -9,7 +9,7 @@ from typing import Any
 from moldloft.language import SYNONYMS, attributes
 from moldloft.terms import FIELDS
 
-__all__ = ["anchor", "entry_pages", "example_lines", "markdown", "signature", "terms_page"]
+__all__ = ["anchor", "entry_pages", "example_lines", "index_page", "signature", "terms_page"]
 
 Row = dict[str, Any]
 
@@ -310,22 +310,24 @@ def _first_sentence(doc: str) -> str:
     return found[0] if found else text
 
 
-def _rows_of(chosen: list[Row]) -> list[str]:
+def _rows_of(chosen: list[Row], every: list[Row]) -> list[str]:
     lines = ["", "| name | result | meaning |", "| --- | --- | --- |"]
     for row in chosen:
         first = _first_sentence(str(row["doc"])).replace("|", "\\|")
-        lines.append(f"| `{row['name']}` | {row['class']} | {first} |")
+        link = f"reference/{anchor(row, every)}.md"
+        lines.append(f"| [`{row['name']}`]({link}) | {row['class']} | {first} |")
     return lines
 
 
-def markdown(rows: list[Row], libraries: list[Row]) -> str:
-    """The index, made from the declarations and from the libraries' routines."""
+def index_page(rows: list[Row], libraries: list[Row]) -> str:
+    """The index of all entries, with links to their pages."""
+    every = [*rows, *libraries]
     lines = [
         "# Reference of kinds and functions",
         "",
-        "All kinds of objects and all functions, in groups. The site has a page for each, with",
-        "picture, arguments and example. `moldloft doc NAME` prints it in the terminal; other",
-        "words are searched for. Angles are in radians, lengths in the unit of the model.",
+        "All kinds of objects and all functions, in groups, each with a page with picture,",
+        "arguments and example. `moldloft doc NAME` prints it in the terminal; other words are",
+        "searched for. Angles are in radians, lengths in the unit of the model.",
         "",
         "## Arguments of every kind",
         "",
@@ -344,10 +346,9 @@ def markdown(rows: list[Row], libraries: list[Row]) -> str:
     for title, about, chosen in groups(rows):
         lines += ["", f"## {title}"]
         lines += ["", about] if about else []
-        lines += _rows_of(chosen)
+        lines += _rows_of(chosen, every)
     for file in dict.fromkeys(row["library"] for row in libraries):
         lines += ["", f"## Library {file}", ""]
         lines += [f'Routines of the language, after `load "{file}";`.']
-        lines += _rows_of([row for row in libraries if row["library"] == file])
-    lines += ["", "Made by `make reference` from the declarations in `crates/`."]
+        lines += _rows_of([row for row in libraries if row["library"] == file], every)
     return "\n".join(lines) + "\n"

@@ -1,4 +1,4 @@
-# Made by `make reference` from the declarations in `crates/`; not edited by hand.
+# Made by `make stubs` from the declarations in `crates/`; not edited by hand.
 """Functions of fields and sets, made from the rows of the language."""
 
 from collections.abc import Sequence
