@@ -1,6 +1,6 @@
 //! Structured grids: interpolated from edges and faces, smoothed, measured.
 
-use crate::value::{BlockArg, GridArg, Points, gathered, surface};
+use crate::value::{BlockArg, GridArg, Points, distinct_neighbours, gathered, surface};
 use moldloft_budget::Budget;
 use moldloft_grid::{
     Blend, Elliptic, Faces, FailureCause, GridError, GridSide, Hyperbolic, MarchBoundary, Method,
@@ -574,6 +574,7 @@ impl<T: Scalar> Build<T> for HyperbolicGrid<T> {
         let marched = if is_curve {
             let Points(curve) =
                 Points::from_value(&start).map_err(|fault| fault.in_field(Self::S))?;
+            distinct_neighbours(&curve, Self::S)?;
             let support: Box<dyn Support<T>> = match &self.on {
                 Some(surface) => {
                     let side = self.normal.map(|normal| normal.re());

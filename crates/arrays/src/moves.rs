@@ -1,6 +1,6 @@
 //! Rigid motions of arrays of points, and frames along curves.
 
-use crate::value::{Points, Shaped, vectors};
+use crate::value::{Points, Shaped, distinct_neighbours, vectors};
 use moldloft_num::{Real, Vec3};
 use moldloft_registry::{ArrayShape, Build, CallError, Context, FieldId, Kind, Scalar, Value};
 use std::f64::consts::FRAC_PI_2;
@@ -209,15 +209,9 @@ fn tangents<T: Real>(points: &[Vec3<T>], field: FieldId) -> Result<Vec<Vec3<T>>,
             .in_field(field));
     }
     let mut chords = Vec::with_capacity(n - 1);
-    for k in 1..n {
-        let d = points[k] - points[k - 1];
-        if d.norm_sq().re() == 0.0 {
-            let message = format!("points {k} and {} coincide", k + 1);
-            return Err(CallError::new("coincident-points", message)
-                .expected("distinct neighbouring points")
-                .in_item(k)
-                .in_field(field));
-        }
+    distinct_neighbours(points, field)?;
+    for pair in points.windows(2) {
+        let d = pair[1] - pair[0];
         chords.push((d, d.norm()));
     }
     // The derivative of the parabola through three points by chord length.

@@ -1,7 +1,7 @@
 //! Grids round a section in one call: O, C and H.
 
 use crate::grids::fault;
-use crate::value::{Farray, Points, surface};
+use crate::value::{Farray, Points, distinct_neighbours, surface};
 use moldloft_grid::{
     Blend, Elliptic, GridError, GridSide, Hyperbolic, MarchBoundary, Method, SurfaceGrid, Wall,
     elliptic_until, folded_cells, hyperbolic_curve_until, transfinite,
@@ -22,6 +22,7 @@ fn closed_section<T: Real>(
             .found(points.len().to_string())
             .in_field(field));
     }
+    distinct_neighbours(&points, field)?;
     let origin = points[0].re();
     let size = points.iter().map(|p| p.re().distance(origin)).fold(0.0, f64::max);
     if points.iter().any(|p| (p.re().z - origin.z).abs() > 1e-9 * size) {

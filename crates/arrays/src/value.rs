@@ -4,7 +4,7 @@
 use moldloft_grid::{SurfaceGrid, VolumeGrid};
 use moldloft_num::{Real, Vec3};
 use moldloft_registry::{
-    Array, ArrayShape, CallError, Class, FromValue, Scalar, Value, Vectors as Planes,
+    Array, ArrayShape, CallError, Class, FieldId, FromValue, Scalar, Value, Vectors as Planes,
 };
 use std::borrow::Cow;
 use std::marker::PhantomData;
@@ -36,6 +36,21 @@ pub struct VectorArray<T> {
 pub enum Numbers<T> {
     One(T),
     Many(Farray<T>),
+}
+
+/// Refuses neighbouring points of a curve that coincide.
+pub fn distinct_neighbours<T: Real>(points: &[Vec3<T>], field: FieldId) -> Result<(), CallError> {
+    let no_distance = |pair: &[Vec3<T>]| (pair[1] - pair[0]).norm_sq().re() == 0.0;
+    match points.windows(2).position(no_distance) {
+        None => Ok(()),
+        Some(k) => {
+            let message = format!("points {} and {} coincide", k + 1, k + 2);
+            Err(CallError::new("coincident-points", message)
+                .expected("distinct neighbouring points")
+                .in_item(k + 1)
+                .in_field(field))
+        }
+    }
 }
 
 fn not_finite(index: usize) -> CallError {

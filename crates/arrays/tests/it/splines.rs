@@ -369,6 +369,14 @@ fn faults_say_where() {
     assert_eq!(refused("evals", &rows), ("shapes-differ", Some(2), None));
     let flat = surface(3, 3, |i, _| [i as f64, 0.0, 0.0]);
     assert_eq!(refused("makels", &[flat]).0, "coincident-points");
+    let doubled = [[1.0, 0.0], [0.5, 0.1], [0.0, 0.0], [0.0, 0.0], [0.5, -0.1], [1.0, 0.0]];
+    let doubled = curve(&doubled.map(|[x, y]| [x, y, 0.0]));
+    let heights = farray(&[0.0, 0.01, 0.03]);
+    for name in ["o_grid", "hyperbolic", "tangents"] {
+        let args = [doubled.clone(), heights.clone()];
+        let args = &args[..if name == "tangents" { 1 } else { 2 }];
+        assert_eq!(refused(name, args), ("coincident-points", Some(0), Some(3)), "{name}");
+    }
     assert_eq!(
         refused("makels", &[surface(3, 3, wavy), text("arclen")]),
         ("unknown-word", Some(1), None)
