@@ -11,8 +11,8 @@ use super::{CommandError, words::CommandTokenKind};
 use crate::solid::feature::NoBody;
 use crate::solid::validity::SolidDefect;
 use crate::{
-    CoordinateAxis, DOUBTFUL, DimensionLayout, DimensionRole, MeasuredQuantity, Planes, Projection,
-    SketchObject, TypeFault, chain, chain_text,
+    Align, CoordinateAxis, DOUBTFUL, DimensionLayout, DimensionRole, MeasuredQuantity, Planes,
+    Projection, SketchObject, TypeFault, chain, chain_text,
 };
 use moldloft_diag::Severity;
 use moldloft_syntax::number::plain;
@@ -219,6 +219,14 @@ impl SketchSession {
             let fault = dimension_fault(fault);
             let about = *fault.about;
             self.out.push(CommandReply { about, ..CommandReply::warning(fault.text) });
+        }
+        for Align { axis, p, q } in likely_aligns(&object, &view, &layout) {
+            let text =
+                format!("{axis}: points {p} and {q} are in one plane, as far as the picture tells");
+            let mut reply = CommandReply::warning(text);
+            reply.next = Some(format!("ALIGN {axis} {p} {q}"));
+            reply.about = ReplySubject::of("likely-one-plane").points([p, q]).axis(axis);
+            self.out.push(reply);
         }
         for (text, about) in self.loose_lines(&object, &view, &layout) {
             self.out.push(CommandReply { about, ..CommandReply::warning(text) });
@@ -774,6 +782,24 @@ impl SketchSession {
         self.state.picture.view = name;
         Ok(())
     }
+}
+
+/// Planes of parts of open depth that coincide with planes of the rest, as far as the picture tells,
+/// unless dimensions determine the depth.
+pub(super) fn likely_aligns(
+    object: &SketchObject,
+    view: &DrawingCache,
+    layout: &DimensionLayout<f64>,
+) -> Vec<Align> {
+    let known = |align: &Align| {
+        CoordinateAxis::ALL.into_iter().any(|axis| {
+            let along = MeasuredQuantity::Along { axis, p: align.p, q: align.q };
+            layout.measured(object, &view.planes, &along).is_some()
+        })
+    };
+    let depths = view.estimate().map_or(&[][..], |e| &e.depths);
+    let open = depths.iter().filter(|depth| !depth.aligns.iter().any(known));
+    open.flat_map(|depth| &depth.aligns).copied().collect()
 }
 
 /// For each part that is not connected to the reference, the dimension to the nearest known plane.

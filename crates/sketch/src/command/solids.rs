@@ -3,7 +3,7 @@
 use super::CommandError;
 use super::args::Args;
 use super::draw::{require_lines, require_point};
-use super::info::suggestions;
+use super::info::{likely_aligns, suggestions};
 use super::question::Question;
 use super::session::{CommandReply, MAX_POINTS, SketchSession};
 use super::subject::{ReplySubject, Suggestion};
@@ -270,8 +270,10 @@ impl SketchSession {
 
     /// `ACCEPT ALL`: every missing dimension as the picture suggests it.
     pub(super) fn accept_all(&mut self) -> Result<(), CommandError> {
-        let (object, taken) = self.completed(&self.active()?.clone());
-        if taken.is_empty() {
+        let before = self.active()?.clone();
+        let (object, taken) = self.completed(&before);
+        let aligned = &object.drawing.aligns[before.drawing.aligns.len()..];
+        if taken.is_empty() && aligned.is_empty() {
             return Err(CommandError::text(
                 "no dimension is missing, or the picture suggests none",
                 "CHECK lists what is missing",
@@ -281,12 +283,15 @@ impl SketchSession {
             .iter()
             .map(|(name, s)| format!("{name} {} {} TO {} = {}", s.axis, s.p, s.q, plain(s.value)))
             .collect();
+        let aligned = aligned.iter().map(|a| format!("ALIGN {} {} {}", a.axis, a.p, a.q));
+        let text: Vec<String> = aligned.chain(text).collect();
         *self.active_mut()? = object;
         self.out.push(CommandReply::note(format!("taken from the picture: {}", text.join(", "))));
         self.report_counts()
     }
 
-    /// An object with its missing dimensions as the picture suggests them, and those.
+    /// An object with its missing dimensions as the picture suggests them, and those. Parts of open
+    /// depth are aligned with the rest where their planes coincide.
     pub(super) fn completed(
         &mut self,
         object: &SketchObject,
@@ -295,6 +300,11 @@ impl SketchSession {
         let mut taken = Vec::new();
         loop {
             let (view, layout) = self.laid_out(&out);
+            let aligned = likely_aligns(&out, &view, &layout);
+            if !aligned.is_empty() {
+                out.draw().aligns.extend(aligned);
+                continue;
+            }
             let found = suggestions(&out, &view, &layout).into_iter().flatten();
             // A picture's suggestion changes with each dimension; an exact drawing gives all at
             // once.

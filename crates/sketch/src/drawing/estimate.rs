@@ -3,10 +3,11 @@
 //! Unknown are the plane positions (one per plane; the reference point's are zero) and where the
 //! origin was drawn; every point gives two equations, as its projection should be where it was
 //! drawn. The equations are linear, so the solution is immediate, and the rank that is missing is
-//! the exact number of depths that the picture leaves open.
+//! the exact number of depths that the picture leaves open; each of these has its likeliest value.
 
+use crate::drawing::open_depths::OpenDepths;
 use crate::drawing::planes::Planes;
-use crate::{CoordinateAxis, Drawing, PointId};
+use crate::{Align, CoordinateAxis, Drawing, PointId};
 use moldloft_num::Vec3;
 
 /// Maximum number of planes for an estimate (the work grows with the cube).
@@ -19,6 +20,8 @@ pub struct FreeDepth {
     pub planes: Vec<(CoordinateAxis, usize, f64)>,
     /// The points on these planes.
     pub points: Vec<PointId>,
+    /// Planes of the part that coincide with planes of the rest at the likeliest depth.
+    pub aligns: Vec<Align>,
 }
 
 /// Estimated plane positions, in units of the page.
@@ -79,7 +82,13 @@ impl Estimate {
         for (c, &(axis, plane)) in owner.iter().enumerate() {
             coordinates[axis.index()][plane] = solution[c];
         }
-        let depths = null.into_iter().map(|z| {
+        let motions: Vec<[Vec<f64>; 3]> = (null.iter())
+            .map(|z| column.each_ref().map(|c| c.iter().map(|c| c.map_or(0.0, |c| z[c])).collect()))
+            .collect();
+        let mut open = OpenDepths { drawing, planes, coordinates, motions };
+        let aligns = open.settle();
+        let coordinates = open.coordinates;
+        let depths = null.into_iter().zip(aligns).map(|(z, aligns)| {
             let moving: Vec<(CoordinateAxis, usize, f64)> = (owner.iter().zip(&z))
                 .filter(|(_, m)| m.abs() > 1e-7)
                 .map(|(&(axis, plane), &m)| (axis, plane, m))
@@ -88,7 +97,7 @@ impl Estimate {
                 moving.iter().flat_map(|&(axis, plane, _)| planes.members(axis, plane)).collect();
             points.sort_unstable();
             points.dedup();
-            FreeDepth { planes: moving, points }
+            FreeDepth { planes: moving, points, aligns }
         });
         Some(Estimate { coordinates, depths: depths.collect() })
     }

@@ -5,6 +5,7 @@ pub(crate) mod estimate;
 mod face_loops;
 pub(crate) mod line_types;
 mod noise;
+mod open_depths;
 pub(crate) mod planes;
 pub(crate) mod projection;
 

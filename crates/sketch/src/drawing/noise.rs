@@ -34,6 +34,11 @@ const APART: f64 = 3.5;
 /// is inclined: most tapered bodies taper on all sides.
 const TAPER: f64 = 2.5;
 
+/// Standard deviation of the direction in which a hand draws an axis, in radians, and the most by
+/// which it is taken to be off.
+const AXIS_TURN: f64 = 0.02;
+const MOST_TURN: f64 = 0.09;
+
 /// Directions at which an inclined line is tried.
 const DIRECTIONS: usize = 720;
 
@@ -69,7 +74,7 @@ impl Drawing {
             })
             .filter(|s| s.length > 0.0)
             .collect();
-        let axes: Vec<(CoordinateAxis, [f64; 2])> = (CoordinateAxis::ALL.into_iter())
+        let given: Vec<(CoordinateAxis, [f64; 2])> = (CoordinateAxis::ALL.into_iter())
             .filter(|a| self.section != Some(*a))
             .filter_map(|a| {
                 let [x, y] = self.projection.unit(a);
@@ -77,6 +82,7 @@ impl Drawing {
                 (length > 0.0).then(|| (a, [x / length, y / length]))
             })
             .collect();
+        let mut axes = given.clone();
         let mut sigma = self.pen_noise(&strokes, &axes);
         let size = strokes.iter().map(|s| s.length).fold(0.0, f64::max);
         // The fraction of lines along an axis varies between drawings: the drawing's own, starting
@@ -88,6 +94,7 @@ impl Drawing {
             let along = |v: &Verdict| if v.axis.is_some() { v.share } else { 1.0 - v.share };
             let sum = alone.iter().map(along).sum::<f64>() + USUAL_LINES * PRINCIPAL;
             usual = sum / (alone.len() as f64 + USUAL_LINES);
+            axes = drawn_axes(&given, &strokes, &alone, sigma);
             // The noise by all lines that are likely along an axis.
             let (mut squares, mut weight) = (STEADY_LINES * (STEADY * size).powi(2), STEADY_LINES);
             for (v, s) in alone.iter().zip(&strokes) {
@@ -193,6 +200,29 @@ impl Drawing {
         let mean = (n * found * found + STEADY_LINES * usual * usual) / (n + STEADY_LINES);
         Real::sqrt(mean).clamp(LEAST * size, MOST * size)
     }
+}
+
+/// The directions in which a hand drew the axes: the likeliest by the lines along each, and by its
+/// stated direction.
+fn drawn_axes(
+    given: &[(CoordinateAxis, [f64; 2])],
+    strokes: &[Stroke],
+    verdicts: &[Verdict],
+    sigma: f64,
+) -> Vec<(CoordinateAxis, [f64; 2])> {
+    let turned = |&(axis, [x, y]): &(CoordinateAxis, [f64; 2])| {
+        let (mut sum, mut weight) = (0.0, 1.0 / AXIS_TURN.powi(2));
+        for (s, v) in strokes.iter().zip(verdicts).filter(|(_, v)| v.axis == Some(axis)) {
+            let sense = (s.d[0] * x + s.d[1] * y).signum();
+            let precision = v.share / (2.0 * sigma * sigma);
+            sum += precision * s.length * sense * (x * s.d[1] - y * s.d[0]);
+            weight += precision * s.length * s.length;
+        }
+        let angle = (sum / weight).clamp(-MOST_TURN, MOST_TURN);
+        let (sin, cos) = (Real::sin(angle), Real::cos(angle));
+        (axis, [x * cos - y * sin, x * sin + y * cos])
+    };
+    given.iter().map(turned).collect()
 }
 
 /// True if two strokes may be parallel in space: they are parallel in the picture within the noise

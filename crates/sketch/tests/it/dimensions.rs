@@ -3,6 +3,7 @@
 use crate::common::*;
 use moldloft_num::{Dual, Real, Vec3};
 use moldloft_sketch::*;
+use moldloft_testing::Random;
 
 fn text(points: &[PointId]) -> String {
     points.iter().map(|p| p.to_string()).collect::<Vec<_>>().join(" ")
@@ -397,4 +398,39 @@ fn length_slope_angle_and_equal_take_the_place_of_axis_dimensions() {
     with(&mut object, "length", MeasuredQuantity::Length(face), "60");
     let (_, bad) = layout(&object);
     assert!(matches!(bad.faults[..], [DimensionFault::Unsolved { .. }]) && !bad.complete());
+}
+
+/// The lock wall without alignments and the pyramid, from pictures with noise, in parts of 400: the
+/// hole is flush with the ends of the wall, the apex is over the middle of its base.
+#[test]
+fn open_depths_have_their_likeliest_values() {
+    let mut random = Random::new(7);
+    for (id, noise) in [("T9 ", 0.0), ("T9 ", 1.0), ("T9 ", 2.5), ("T8 ", 0.0), ("T8 ", 2.5)] {
+        let case = case_named(id);
+        let mut object = case.object;
+        let drawing = object.draw();
+        drawing.aligns.clear();
+        let drawn: Vec<[f64; 2]> =
+            case.xyz.iter().map(|p| drawing.projection.project(*p)).collect();
+        let width = drawn.iter().map(|p| p[0].abs()).fold(0.0, f64::max);
+        for (k, [u, v]) in drawn.into_iter().enumerate() {
+            let mut off = || noise / 400.0 * width * random.between(-1.0, 1.0);
+            drawing.points.insert(PointId(k as u32 + 1), DrawnPoint { u: u + off(), v: v + off() });
+        }
+        let planes = Planes::of(&object.drawing);
+        let estimate = Estimate::of(&object.drawing, &planes, PointId(1)).unwrap();
+        let [depth] = &estimate.depths[..] else { panic!("{id} {noise}") };
+        assert_eq!(depth.aligns.len(), if id == "T9 " { 2 } else { 0 }, "{noise} {depth:?}");
+        for align in &depth.aligns {
+            let gap = case.xyz[align.p.0 as usize - 1] - case.xyz[align.q.0 as usize - 1];
+            assert_eq!(gap.to_array()[align.axis.index()], 0.0, "{noise} {align:?}");
+        }
+        for (k, xyz) in case.xyz.iter().enumerate() {
+            let p = estimate.point(&planes, PointId(k as u32 + 1));
+            assert!(
+                p.distance(*xyz) < 1e-8 + 0.03 * noise * width / 10.0,
+                "{id} {noise} {p:?} {xyz:?}"
+            );
+        }
+    }
 }

@@ -1,0 +1,143 @@
+"""Ordinary parts as a hand draws them: types of lines, and the solid without any dimension.
+
+The corners of a part are drawn with wrong proportions and off by a noise, in parts of a width of
+400; axes may be off by some degrees. What is right is known by construction: the type of each line,
+and the order of all points along each axis.
+"""
+
+from __future__ import annotations
+
+import os
+from itertools import pairwise
+
+import numpy as np
+import pytest
+
+from moldloft import Sketch
+
+SOAK = os.environ.get("MOLDLOFT_SOAK") == "1"
+DRAWS = 50 if SOAK else 2
+
+Shape = tuple[np.ndarray, list[tuple[int, int]]]
+
+#: Where the two axes of a section and that of the extrusion go.
+PLANES = {"XZ": (0, 2, 1), "XY": (0, 1, 2), "YZ": (1, 2, 0)}
+
+
+def prism(plane: str, depth: float, *loops: str) -> Shape:
+    """The corners and edges of an extruded section, each loop as `a,b a,b ...`."""
+    points: list[np.ndarray] = []
+    edges: list[tuple[int, int]] = []
+    for text in loops:
+        loop = np.array([[float(x) for x in pair.split(",")] for pair in text.split()])
+        first, n = len(points), len(loop)
+        for level in (0.0, depth):
+            for pair in loop:
+                point = np.zeros(3)
+                point[list(PLANES[plane])] = [*pair, level]
+                points.append(point)
+        for k in range(n):
+            after = (k + 1) % n
+            edges += [(first + k, first + after), (first + n + k, first + n + after)]
+            edges.append((first + k, first + n + k))
+    return np.array(points), edges
+
+
+def roofed(ridge: list[tuple[float, float, float]]) -> Shape:
+    """A block of 90 x 60 x 30 under a hipped roof or a pyramid."""
+    base = [(0.0, 0.0), (90.0, 0.0), (90.0, 60.0), (0.0, 60.0)]
+    points = np.array([*((x, y, z) for z in (0.0, 30.0) for x, y in base), *ridge])
+    edges = [(k, (k + 1) % 4) for k in range(4)] + [(4 + k, 4 + (k + 1) % 4) for k in range(4)]
+    edges += [(k, 4 + k) for k in range(4)]
+    low, high = 8, 7 + len(ridge)
+    edges += [(4, low), (7, low), (5, high), (6, high), *pairwise(range(8, 8 + len(ridge)))]
+    return points, edges
+
+
+PARTS = {
+    "angle": prism("XZ", 45, "0,0 80,0 80,10 12,10 12,60 0,60"),
+    "stairs": prism("XZ", 90, "0,0 0,17 28,17 28,34 56,34 56,51 84,51 84,0"),
+    "dam": prism("XZ", 50, "0,0 70,0 16,72 16,90 0,90"),
+    "hollow wall": prism(
+        "XZ", 35, "0,0 42,0 42,8 30,8 30,30 14,52 14,60 0,60", "6,6 18,6 18,20 6,20"
+    ),
+    "vee": prism("XZ", 60, "0,0 70,0 70,48 54,48 37,31 33,31 16,48 0,48"),
+    "tee slot": prism(
+        "XZ", 60, "0,0 70,0 70,36 42,36 42,26 48,26 48,16 22,16 22,26 28,26 28,36 0,36"
+    ),
+    "dovetail": prism("XZ", 70, "0,0 70,0 70,36 43,36 50,22 20,22 27,36 0,36"),
+    "culvert": prism(
+        "XZ", 70, "0,0 60,0 60,50 0,50", "12,6 48,6 54,12 54,38 48,44 12,44 6,38 6,12"
+    ),
+    "wedge": prism("XZ", 50, "0,0 80,0 0,40"),
+    "hexagon": prism("XY", 30, "20,0 45,0 62,24 45,48 20,48 3,24"),
+    "channel": prism("XZ", 80, "0,0 50,0 50,50 44,50 44,6 6,6 6,50 0,50"),
+    "shed": prism("YZ", 90, "0,0 60,0 60,30 30,50 0,30"),
+    "drilled block": prism("XY", 30, "0,0 80,0 80,60 0,60", "25,18 55,18 55,42 25,42"),
+    "two windows": prism(
+        "XZ", 20, "0,0 90,0 90,50 0,50", "10,12 30,12 30,38 10,38", "50,12 75,12 75,38 50,38"
+    ),
+    "portal": prism("XZ", 30, "0,0 14,0 14,50 66,50 66,0 80,0 80,64 0,64"),
+    "hip roof": roofed([(28.0, 30.0, 58.0), (62.0, 30.0, 58.0)]),
+    "spire": roofed([(45.0, 30.0, 75.0)]),
+}
+
+
+def drawn(shape: Shape, noise: float, turn: float, rng: np.random.Generator) -> np.ndarray:
+    """The corners on the page: proportions off by a tenth, axes by `turn` degrees."""
+    points, _ = shape
+    wrong = np.empty_like(points)
+    for axis in range(3):
+        levels, which = np.unique(points[:, axis], return_inverse=True)
+        gaps = np.diff(levels) * np.exp(0.1 * rng.standard_normal(len(levels) - 1))
+        wrong[:, axis] = np.concatenate([[0.0], np.cumsum(gaps)])[which]
+    angles = np.radians(np.array([345.0, 40.0, 90.0]) + turn * rng.standard_normal(3))
+    page = wrong @ np.column_stack([np.cos(angles), np.sin(angles)])
+    page *= 400.0 / np.ptp(page, axis=0).max()
+    return page + noise * rng.standard_normal(page.shape)
+
+
+def judged(shape: Shape, page: np.ndarray) -> tuple[bool, bool, bool]:
+    """Whether all types are right, the solid is as meant, and some doubt is shown."""
+    points, edges = shape
+    sketch = Sketch()
+    sketch.run("SKETCH A\nAXES 345 40 90")
+    sketch.draw(page, edges)
+    sketch.run("TYPE AUTO", strict=False)
+    doubts = {"doubtful-type", "taken-as-oblique"}
+    doubted = any(found.about.kind in doubts for found in sketch.check())
+    lines = sketch.parts().lines
+    moves = points[[q for _, q in edges]] - points[[p for p, _ in edges]]
+    want = ["".join(np.array(list("XYZ"))[np.abs(move) > 0]) for move in moves]
+    types = [lines[k + 1].type for k in range(len(edges))] == [
+        "O" if word == "XYZ" else word for word in want
+    ]
+    sketch.run("ACCEPT ALL", strict=False)
+    sketch.run("GENERATE FACES", strict=False)
+    if sketch.volume is None:
+        return types, False, doubted
+    at = sketch.parts().points
+    found = np.array([at[k + 1].at for k in range(len(points))])
+    meant, shown = (np.sign(a[:, None] - a[None]) for a in (points, found))
+    return types, bool(((meant == shown) | (meant == 0)).all()), doubted
+
+
+@pytest.mark.parametrize(
+    ("noise", "turn", "types", "solids"),
+    [(0.0, 0.0, 1.0, 1.0), (1.0, 0.0, 0.95, 0.9), (2.5, 0.0, 0.88, 0.8), (2.5, 2.0, 0.8, 0.7)],
+)
+def test_parts_are_as_meant(noise: float, turn: float, types: float, solids: float) -> None:
+    rng = np.random.default_rng(7)
+    rows = [
+        judged(shape, drawn(shape, noise, turn, rng))
+        for shape in PARTS.values()
+        for _ in range(DRAWS)
+    ]
+    count = len(rows)
+    right, solid = (sum(row[k] for row in rows) / count for k in (0, 1))
+    silent = sum(not row[0] and not row[2] for row in rows) / count
+    print(f"{noise} {turn}: {right:.3f} typed right, {solid:.3f} as meant, {silent:.3f} no doubt")
+    # Few draws say little about a fraction: three standard deviations of it.
+    slack = 0.0 if SOAK or noise == 0.0 else 1.5 / np.sqrt(count)
+    assert right >= types - slack
+    assert solid >= solids - slack
