@@ -414,7 +414,7 @@ pub fn fair_data(data: &Data, options: &DataOptions) -> Result<DataFit, FairErro
     }
     let jumps = matches!(options.measure, Measure::Jumps | Measure::JumpLengths);
     let mut parts = data.parts(options, &job)?;
-    let found = data.found(options, &job, &mut parts)?;
+    let found = data.found(options, &job, &mut parts, None)?;
     let plain = data.fit(found, &job);
     if options.bends || jumps || plain.points == job.points {
         return Ok(plain);
@@ -631,7 +631,7 @@ impl Data {
         job: &Job,
         parts: &mut Parts<'_>,
     ) -> Result<DataFit, FairError> {
-        Ok(self.fit(self.found(options, job, parts)?, job))
+        Ok(self.fit(self.found(options, job, parts, None)?, job))
     }
 
     pub(super) fn fit(&self, found: GoalOptimum, job: &Job) -> DataFit {
@@ -682,11 +682,13 @@ impl Data {
         Goal::Near(most / mean)
     }
 
+    /// As `along`; `fairest` is the fairest curve of these parts, where it is known.
     pub(super) fn found(
         &self,
         options: &DataOptions,
         job: &Job,
         parts: &mut Parts<'_>,
+        fairest: Option<Optimum>,
     ) -> Result<GoalOptimum, FairError> {
         let pull = self.pull(parts);
         let (rows, norm) = (parts.measure.clone(), parts.norm);
@@ -717,6 +719,7 @@ impl Data {
             known: None,
             moves: self.layout.thin.as_ref().map(|thin| self.moves(thin)),
             nearest: nearest.as_ref().map(|nearest| nearest as &dyn Fn(Optimum) -> _),
+            fairest,
         };
         let goal = self.goal_beside_nearest(options.goal, &path, parts, &pull);
         path.follow(goal, norm, conditioned, parts, &pull)

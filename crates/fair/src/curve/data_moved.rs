@@ -83,7 +83,7 @@ pub(super) fn fair_data_under<T: Real>(
     }
     let job = data.job()?;
     let mut parts = data.parts(options, &job)?;
-    let found = data.found(options, &job, &mut parts)?;
+    let found = data.found(options, &job, &mut parts, None)?;
     let layout = &data.layout;
     let (at, knots) = layout.moving(numbers.at);
     if still {

@@ -13,8 +13,8 @@ use crate::curve::data::{Data, DataFit, DataOptions, fair_data};
 use crate::curve::job::Job;
 use crate::interrogate::shape::{self, Sample};
 use crate::interrogate::soft_counts::{EARLY, LATE, SoftCounts};
-use crate::optimum::Parts;
 use crate::optimum::goal::Goal;
+use crate::optimum::{Optimum, Parts};
 use crate::{FairError, InterpolationSpace, SparseRows};
 use moldloft_num::Vec3;
 
@@ -86,7 +86,7 @@ struct FairingPath<'a> {
     parts: Parts<'a>,
     pull: SparseRows,
     goal: DataFit,
-    fairest: Vec<Vec3<f64>>,
+    fairest: Optimum,
     /// Minimum of the measure, and the optimality gap of the goal's curve.
     least: f64,
     share: f64,
@@ -122,7 +122,7 @@ impl FairingPath<'_> {
             return Ok(self.goal.points.clone());
         }
         if x >= 1.0 || self.goal.weight == 0.0 {
-            return Ok(self.towards(&self.fairest, x.min(1.0)));
+            return Ok(self.towards(&self.fairest.points, x.min(1.0)));
         }
         self.parts.pull = None;
         let found = self.parts.within(&self.pull, self.budget(x) * self.mean)?;
@@ -141,7 +141,9 @@ impl FairingPath<'_> {
             Goal::Fairest
         };
         let options = DataOptions { goal, ..self.plain.clone() };
-        self.data.along(&options, self.job, &mut self.parts)
+        let known = Some(self.fairest.clone());
+        let found = self.data.found(&options, self.job, &mut self.parts, known)?;
+        Ok(self.data.fit(found, self.job))
     }
 
     /// The data at parameters between their own and the lengths.
@@ -182,7 +184,7 @@ impl FairingPath<'_> {
                 Ok((Some(data.layout), fit))
             }
             None => {
-                let both = self.fairest.iter().zip(&self.calm.points);
+                let both = self.fairest.points.iter().zip(&self.calm.points);
                 let points = both.map(|(p, q)| *p + (*q - *p) * y).collect();
                 Ok((None, self.measured(points)?))
             }
@@ -194,7 +196,7 @@ impl FairingPath<'_> {
     fn position(&mut self, limits: &CountLimits) -> Result<f64, FairError> {
         // Few knots have few ripples, and many data take long.
         let steps = if self.data.layout.interpolates() { BUDGET_STEPS } else { SHAPED_STEPS };
-        let fairest = limits.beyond(&self.counter, &self.fairest);
+        let fairest = limits.beyond(&self.counter, &self.fairest.points);
         let (mut x, mut over) = (0.0, fairest);
         for k in (0..steps).rev() {
             if over < HELD {
@@ -246,15 +248,13 @@ impl Data {
     ) -> Result<Relaid, FairError> {
         let plain = DataOptions { bends: true, ..options.clone() };
         let mut parts = self.parts(&plain, job)?;
-        let found = self.found(&plain, job, &mut parts)?;
+        let found = self.found(&plain, job, &mut parts, None)?;
         let (fairest, least, share) = (found.fairest.clone(), found.least, found.share);
         let (used, fairest_used) = (found.used, found.fairest_used);
         let goal = self.fit(found, job);
         let counter = BendCounter::new(&self.layout.space);
         let plane = || shape::plane_normal(&counter.samples(&goal.points)).is_some();
-        if fairest.is_empty() || !plane() {
-            return Ok((None, goal));
-        }
+        let Some(fairest) = fairest.filter(|_| plane()) else { return Ok((None, goal)) };
         let calm = {
             let options = DataOptions { goal: Goal::Fairest, ..options.clone() };
             fair_data(turned.as_ref().map_or(self, |t| t.lengths), &options)?
@@ -263,7 +263,7 @@ impl Data {
             Some(t) => BendCounter::new(&t.lengths.layout.space).soft(&calm.points, LATE),
             None => counter.soft(&calm.points, LATE),
         };
-        let both = [least_bent, counter.soft(&fairest, LATE)];
+        let both = [least_bent, counter.soft(&fairest.points, LATE)];
         let limits = CountLimits::of(&both, more_pieces(options.goal));
         let pull = self.pull(&parts);
         let mean = (pull.len() as f64 / 3.0).max(f64::MIN_POSITIVE);

@@ -465,6 +465,7 @@ impl GridData {
             known: None,
             moves: None,
             nearest: None,
+            fairest: None,
         };
         // The measure of closed lines is never small, so that it does not show what a move is worth.
         let closed = self.layouts.iter().any(|layout| layout.space.is_closed());

@@ -792,6 +792,7 @@ impl LineFairing<'_> {
             known: known.filter(|known| known.weight > 0.0),
             moves: None,
             nearest: None,
+            fairest: None,
         };
         let goal = match self.share {
             Some(share) if wider.is_finite() && self.ties == (0.0, 0) => {

@@ -172,6 +172,7 @@ impl Network {
             known: None,
             moves: None,
             nearest: None,
+            fairest: None,
         };
         let mut found = path.follow(goal, norm, conditioned, parts, &pull)?;
         while self.limits_between() && between.extend(self, &found.optimum.points)? {

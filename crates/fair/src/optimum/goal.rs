@@ -178,8 +178,9 @@ const NOISY: f64 = 1e-5;
 /// Solutions that come no nearer after which others are not looked for where these are quick.
 const MOST_IDLE: usize = 3;
 
-/// So many residuals make each search worth saving.
-const MANY: usize = 200;
+/// So many residuals make each search worth saving: beyond, one at a weight takes longer than what further digits
+/// of a budget are worth where rounding hides the limits.
+const MANY: usize = 100;
 
 /// Steps of the logarithm of the weight until the goal is between two weights.
 const FIRST_STRIDE: f64 = 2.0;
@@ -219,6 +220,8 @@ pub(crate) struct RegularizationPath<'a, E, S> {
     pub moves: Option<f64>,
     /// Of several fairest the nearest to the original.
     pub nearest: Option<&'a dyn Fn(Optimum) -> Result<Optimum, FairError>>,
+    /// The fairest, where it is known.
+    pub fairest: Option<Optimum>,
 }
 
 /// Dependence of the budget of `near` on the squares of the fairest.
@@ -242,7 +245,7 @@ pub(crate) struct GoalOptimum {
     pub least: f64,
     pub weight: f64,
     /// The fairest, where it was looked for, and what it takes of the squares.
-    pub fairest: Vec<Vec3<f64>>,
+    pub fairest: Option<Optimum>,
     pub fairest_used: f64,
     /// True if the budget depends on the squares of the fairest.
     pub between: bool,
@@ -261,7 +264,7 @@ impl GoalOptimum {
             used: 0.0,
             least: value,
             weight: 0.0,
-            fairest: Vec::new(),
+            fairest: None,
             fairest_used: 0.0,
             between: false,
             several: false,
@@ -397,13 +400,17 @@ where
         }
         let warm = self.adapts != Adaptation::Network;
         let mut solver = WeightedSolver { parts, pull, last: None, warm };
-        let (mut fairest, _) = solver.solve(0.0)?;
         let mut several = false;
-        if let Some(nearest) = self.nearest {
-            let solved = fairest.points.clone();
-            fairest = nearest(fairest)?;
-            several = fairest.points != solved;
-        }
+        let fairest = match (&self.fairest, self.nearest) {
+            (Some(known), _) => known.clone(),
+            (None, None) => solver.solve(0.0)?.0,
+            (None, Some(nearest)) => {
+                let (solved, _) = solver.solve(0.0)?;
+                let fairest = nearest(solved.clone())?;
+                several = fairest.points != solved.points;
+                fairest
+            }
+        };
         let mut ends = PathEnds {
             goal,
             norm,
@@ -651,7 +658,7 @@ where
             optimum: Optimum { certificate, ..optimum },
             least: ends.least,
             weight,
-            fairest: ends.fairest.points.clone(),
+            fairest: Some(ends.fairest.clone()),
             fairest_used: ends.squares / ends.mean,
             between: ends.between,
             several: ends.several && weight == 0.0,
@@ -666,7 +673,7 @@ where
         left.optimum.iterations = fairest.iterations;
         left.least = ends.least;
         left.fairest_used = ends.squares / ends.mean;
-        left.fairest.clone_from(&fairest.points);
+        left.fairest = Some(fairest.clone());
         left
     }
 }
