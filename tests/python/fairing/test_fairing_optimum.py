@@ -106,3 +106,27 @@ def test_the_optimum_is_a_conic_solvers(shape, kind, name):
     least = stated.least(cp, ours, extra)
     assert ours == pytest.approx(least, rel=1e-6)
     assert faired.gap_relative < 1e-6
+
+
+@pytest.mark.parametrize(
+    ("count", "share"),
+    [(k, b) for k in (120, 200) for b in (0.3, 0.8) if SOAK or (k, b) != (200, 0.3)],
+)
+def test_a_budget_of_many_points_is_a_conic_solvers(count, share):
+    """Beyond some hundred points the search for a budget ends where rounding hides the limits."""
+    cp = pytest.importorskip("cvxpy")
+    rng = np.random.default_rng(count)
+    u, noise = np.linspace(0, 1, count), 2e-3
+    data = np.column_stack([10 * u, 1.2 * u**2 + 0.5 * np.sin(3 * u)])
+    data += rng.uniform(-noise, noise, data.shape) / np.sqrt(2)
+    stated = Stated(data, noise)
+    options = {"measure": "variation", "bends": True, "spacing": "chord"}
+    faired = moldloft.fair(data, noise, goal=("budget", share), **options)
+    control = np.asarray(faired.spline.control_points)[:, :2]
+    off = np.linalg.norm(stated.values @ control - data, axis=1) / noise
+    assert off.max() <= 1 + 1e-9
+    assert (off**2).sum() <= share * count / 3 * (1 + 1e-4)
+    ours = stated.energy(control)
+    least = stated.least(cp, ours, budget(share))
+    assert ours == pytest.approx(least, rel=2e-4)
+    assert ours <= least / (1 - faired.gap_relative) * (1 + 1e-6)
