@@ -268,7 +268,7 @@ impl<T: Real> FairSurf<T> {
             bound: (&self.bound, Self::BOUND),
             order: (&self.order, Self::ORDER),
             steps: (self.steps, Self::STEPS),
-            passes: self.passes,
+            passes: (self.passes, Self::PASSES),
             data,
         }
         .method()
@@ -285,6 +285,8 @@ impl<T: Real> FairSurf<T> {
             (self.closed_u == 1, "closed_u", Self::CLOSED_U),
             (self.closed_v == 1, "closed_v", Self::CLOSED_V),
             (!["near", "fairest"].contains(&&*self.goal), "goal", GOAL),
+            (self.share.is_some(), "share", SHARE),
+            (!["chord", "index"].contains(&&*self.spacing), "spacing", Self::SPACING),
         ];
         given.into_iter().find(|g| g.0).map(|g| (g.1, g.2))
     }

@@ -27,7 +27,7 @@ pub(super) struct MethodOptions<'a> {
     pub bound: (&'a Option<Arc<str>>, FieldId),
     pub order: (&'a Option<Arc<str>>, FieldId),
     pub steps: (Option<usize>, FieldId),
-    pub passes: usize,
+    pub passes: (usize, FieldId),
     /// True if the points are data whose parameters depend on them.
     pub data: bool,
 }
@@ -60,6 +60,10 @@ impl MethodOptions<'_> {
         {
             return Err(other("steps", "mode = \"faithful\" or \"sweeps\"", field));
         }
+        let (passes, field) = self.passes;
+        if passes != 1 && mode != "faithful" {
+            return Err(other("passes", "mode = \"faithful\"", field));
+        }
         let steps = self.steps.0;
         match mode {
             "faithful" => {
@@ -68,7 +72,7 @@ impl MethodOptions<'_> {
                     Some("uv") => true,
                     Some(word) => return Err(unknown("order", word, &["vu", "uv"], self.order.1)),
                 };
-                let (passes, steps) = (self.passes, steps.unwrap_or(STEPS));
+                let steps = steps.unwrap_or(STEPS);
                 Ok(SurfaceMethod::Passes { passes, steps, along_v_first })
             }
             "sweeps" => Ok(SurfaceMethod::Sweeps(steps.unwrap_or(SWEEPS))),

@@ -329,3 +329,25 @@ fn faults_of_networks_name_their_argument() {
     let mode = vec![("mode", Value::text("slow"))];
     assert_eq!(fault(Value::list([good]), mode), ("unknown-name", Some(8), None));
 }
+
+/// An option that a method of a surface does not read is refused by its name.
+#[test]
+fn options_of_other_methods_are_refused() {
+    let points = hull();
+    let text = |word: &str| Value::text(word);
+    let near = "is for surfaces near their points";
+    let other = "is for another mode";
+    let cases = [
+        (vec![("passes", number(2.0))], "passes", other),
+        (vec![("mode", text("sweeps")), ("passes", number(2.0))], "passes", other),
+        (vec![("mode", text("sweeps")), ("share", number(0.3))], "share", near),
+        (vec![("as", text("control")), ("share", number(0.3))], "share", near),
+        (vec![("bound", text("curve")), ("spacing", text("centripetal"))], "spacing", near),
+        (vec![("mode", text("faithful")), ("spacing", text("centripetal"))], "spacing", near),
+    ];
+    for (named, option, why) in cases {
+        let grid = Value::Vectors(Arc::new(Vectors::grid(9, 7, points.clone())));
+        let fault = call::<f64>("FairSurf", vec![grid, number(2e-3)], named).unwrap_err();
+        assert_eq!(fault.message, format!("`{option}` {why}"), "{fault:?}");
+    }
+}
