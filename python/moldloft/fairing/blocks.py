@@ -100,6 +100,9 @@ def _grid(rows: list[list[_Cell]], comma: bool, above: str) -> _Grid | None:
     if len(head) < 4:
         return None
     corner, heads = head[0], head[1:]
+    if place_at(corner.text, comma) is not None:
+        # The row of a station, whose `x` is a missing cell.
+        return None
     blocks = [k for k, row in enumerate(rows) if k and len(_filled(row)) == 1 and row[0].text]
     blocks = [k for k in blocks if _kind_of(rows[k][0].text)]
     positions = len(rows) > 1 and len(_filled(rows[1])) > 1 and _kind_of(rows[1][0].text) == "x"

@@ -5,7 +5,7 @@ from __future__ import annotations
 import itertools
 import math
 import warnings
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -252,6 +252,11 @@ def _as_offsets(
             )
         seen[place] = k
     order = list(by_station)
+    falling = _falling(table, by_level.values())
+    if falling is not None:
+        # A level may begin at a station before those of the first.
+        order.sort(reverse=falling)
+        by_station = {x: by_station[x] for x in order}
     rises = [b > a for a, b in itertools.pairwise(order)]
     if not (all(rises) or not any(rises)):
         k = next(k for k in range(1, len(rises)) if rises[k] != rises[0]) + 1
@@ -269,6 +274,18 @@ def _as_offsets(
         curves.append((level_names[z], sorted(rows, key=lambda k: table[k, 0])))
     file.point_names = [f"{names[row[0]]}, {level_names[row[other]]}" for row in table.tolist()]
     return _of_curves(file, curves)
+
+
+def _falling(table: Floats, levels: Iterable[list[int]]) -> bool | None:
+    """True or false if a table has level after level, all with falling or all with rising stations.
+
+    ``None`` if it does not.
+    """
+    own = [np.array(rows) for rows in levels]
+    if any((np.diff(rows) != 1).any() for rows in own):
+        return None
+    falls = np.concatenate([np.diff(table[rows, 0]) for rows in own]) < 0
+    return bool(falls[0]) if len(falls) and (falls == falls[0]).all() else None
 
 
 def _written(file: PointFile, axis: int, groups: dict[float, list[int]]) -> dict[float, str]:

@@ -16,6 +16,7 @@ _STATION = re.compile(r"\b(stations?|st|sta|frames?|ordinates?)\b")
 _LEVEL = re.compile(r"\b(waterlines?|wl|heights?|levels?|z|buttocks?)\b")
 _BRACKETS = re.compile(r"[(\[]([^)\]]*)[)\]]")
 _BUTTOCK = re.compile(r"\bbuttocks?\b")
+_BUTTOCK_LABEL = re.compile(r"butt", re.IGNORECASE)
 
 
 @dataclass
@@ -150,7 +151,8 @@ def decimal_commas(text: str) -> bool:
     text
         The table.
     """
-    return ";" in text and not re.search(r"\d\.\d", text) and bool(re.search(r"\d,\d", text))
+    apart = any(";" in line or "\t" in line.strip() for line in text.splitlines())
+    return apart and not re.search(r"\d\.\d", text) and bool(re.search(r"\d,\d", text))
 
 
 def matrix(text: str) -> OffsetTable | None:
@@ -204,6 +206,8 @@ def matrix(text: str) -> OffsetTable | None:
     title = f"{above} {corner}".lower()
     heights = _BUTTOCK.search(title) is not None and not re.search(r"\b(waterlines?|wl)\b", title)
     heads = [lines[head][a:b].strip('"').strip() for a, b in spans(lines[head])][-len(across) :]
+    labels = heads if stations else [lines[k].strip(' "') for k in below]
+    heights |= all(_BUTTOCK_LABEL.match(label) for label in labels)
     out = OffsetTable([], [], Cells(text), heights=heights)
     out.inches = any("-" in cell.lstrip("-") for cell in heads if number_at(cell, comma))
     try:

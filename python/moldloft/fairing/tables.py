@@ -239,7 +239,7 @@ def _decimal_commas(lines: list[str], out: Plain) -> list[str]:
     def is_row(cells: list[str]) -> bool:
         return len(cells) > 1 and any(_COMMA.fullmatch(c) for c in cells)
 
-    rows = [[c for c in pieces(s)[::2] if c] for s in lines if not s.startswith("#")]
+    rows = [[c for c in pieces(s.strip())[::2] if c] for s in lines if not s.startswith("#")]
     marked = any(";" in s or "\t" in s.strip() for s in lines)
     if not marked:
         # Blanks alone: prose has commas, too.
@@ -257,7 +257,8 @@ def _decimal_commas(lines: list[str], out: Plain) -> list[str]:
     def one(line: str) -> str:
         if not marked and not all(_COMMA.fullmatch(c) or c.isdigit() for c in line.split()):
             return line
-        return "".join(c.replace(",", ".") if _COMMA.fullmatch(c) else c for c in pieces(line))
+        cells = pieces(line)
+        return "".join(c.replace(",", ".") if _COMMA.fullmatch(c.strip()) else c for c in cells)
 
     return [one(line) for line in lines]
 
@@ -275,7 +276,7 @@ def _lengths(lines: list[str], out: Plain) -> list[str]:
             for f, c in zip(in_feet, cells, strict=True)
         ]
         # Between blanks alone a line of words is prose; a named column may hold words, too.
-        words = not any(sign in line for sign in ";\t,")
+        words = not any(sign in line for sign in SEPARATORS)
         if not any(own) or (words and any(length(c) is None for c in cells)):
             made.append(line)
             continue
@@ -373,7 +374,8 @@ def _named(lines: list[str], out: Plain) -> list[str]:
     out.heights = out.stations and any(n.startswith("buttock") for n in plain_names)
     in_order = len(known) == len(names) and [k for _, k in order] == list(range(len(names)))
     out.axes = [at for _, at in order]
-    if in_order and not out.stations:
+    sign = next((s for s in SEPARATORS if s in lines[first]), None)
+    if in_order and not out.stations and sign != "|":
         return lines
     unused = [n for n, a in zip(names, axes, strict=True) if not a]
     if unused:
@@ -381,7 +383,6 @@ def _named(lines: list[str], out: Plain) -> list[str]:
         out.notes.append(f"{word} {', '.join(f'`{n}`' for n in unused)}: not used")
     made = list(lines[: first + 1])
     made[first] = ", ".join(names[k] for _, k in order)
-    sign = next((s for s in ";\t," if s in lines[first]), None)
     for k in range(first + 1, len(lines)):
         line = lines[k]
         if not line.strip() or line.startswith("#"):
