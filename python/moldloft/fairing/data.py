@@ -135,6 +135,12 @@ def fair_data(asked: Data, started: float) -> Fairing:
             "the data; `before` is the least-squares spline; a spacing such as `chord` gives a "
             "knot at each point"
         )
+    if reported["refined"]:
+        count = len(original.control_points)
+        notes.append(
+            f"no curve with knots at the points alone was found with this shape: {count} control "
+            "points, with knots between them"
+        )
     arcs = tuple(Arc(a, b, r, np.asarray(c), off) for (a, b), r, c, off in reported["arcs"])
     notes += [str(arc) for arc in arcs]
     rows = faired(reported["at"])

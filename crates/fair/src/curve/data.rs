@@ -240,13 +240,19 @@ impl Data {
         conditions.extend(options.conditions.iter().cloned());
         let mut rows = SparseRows::new();
         let mut own_radii = Vec::new();
-        for k in (0..radii.len()).filter(|&k| radii[k] > 0.0) {
+        for k in (0..radii.len()).filter(|&k| radii[k] > 0.0 && !layout.free[k]) {
             let (columns, factors) = layout.rows.row(k);
             rows.push(columns.iter().map(|&c| c as usize).zip(factors.iter().copied()));
             own_radii.push(radii[k]);
         }
-        let mut finite: Vec<f64> =
-            radii.iter().map(|r| if r.is_finite() { *r } else { 0.0 }).collect();
+        // Where the curve is free it is within the extent of the data.
+        let extent = self.points.iter().map(|p| (*p - self.points[0]).norm()).fold(0.0, f64::max);
+        let most = |k: usize| match radii[k] {
+            _ if layout.free[k] => extent,
+            r if r.is_finite() => r,
+            _ => 0.0,
+        };
+        let mut finite: Vec<f64> = (0..radii.len()).map(most).collect();
         let (mut offsets, mut begin) = (Vec::new(), Vec::new());
         if let Some(thin) = &layout.thin {
             offsets = (0..finite.len())
@@ -257,7 +263,8 @@ impl Data {
             }
             begin = thin.centre.iter().zip(&job.points).map(|(p, q)| *p - *q).collect();
         }
-        let reach = if radii.iter().all(|r| r.is_finite()) {
+        let bounded = |k: usize| layout.free[k] || radii[k].is_finite();
+        let reach = if (0..radii.len()).all(bounded) {
             layout.reach(&finite)?
         } else {
             vec![f64::INFINITY; job.points.len()]
@@ -405,7 +412,7 @@ pub fn fair_data(data: &Data, options: &DataOptions) -> Result<DataFit, FairErro
     let job = data.job()?;
     if !options.shape.is_empty() {
         if options.is_gated() {
-            return data.gated_shape(options, &job);
+            return data.budgeted_shape(options, &job);
         }
         return data.under_shape(options, &job);
     }
@@ -471,6 +478,12 @@ impl Data {
         Ok(self.along(&least, job, &mut own)?.points)
     }
 
+    /// True if the data's own curve has the shape but for its count of pieces.
+    pub(super) fn meets(&self, shape: &ShapeConstraints, job: &Job) -> bool {
+        let own = shape.by(&self.layout.space, &job.points);
+        own.miss(self, &job.points, self.slack()).0 <= 0.0
+    }
+
     /// The curve of a goal with the required shape.
     pub(super) fn under_shape(
         &self,
@@ -479,9 +492,7 @@ impl Data {
     ) -> Result<DataFit, FairError> {
         let space = &self.layout.space;
         // Data whose own curve has the shape need not move for it.
-        let own = options.shape.by(space, &job.points);
-        let met = own.miss(self, &job.points, self.slack()).0 <= 0.0;
-        if met && options.shape.counted(space, &job.points).is_none() {
+        if self.meets(&options.shape, job) && options.shape.counted(space, &job.points).is_none() {
             let plain = DataOptions { shape: ShapeConstraints::default(), ..options.clone() };
             let mut parts = self.parts(&plain, job)?;
             let made = self.along(&plain, job, &mut parts)?;

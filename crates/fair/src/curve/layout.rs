@@ -21,11 +21,13 @@ pub struct InterpolationSpace {
     /// Parameters of the sites: those of the data, and of points that complete short pieces.
     pub sites: Vec<f64>,
     /// The sites as combinations of the data.
-    sources: SparseRows,
+    pub(super) sources: SparseRows,
     /// Sites without a datum are on the polynomial through the data of their row of `sources`.
     polynomial: bool,
     /// Datum of each site.
     pub owner: Vec<Option<usize>>,
+    /// True for sites between the data at which the curve is free.
+    pub(super) free: Vec<bool>,
     /// The parameter of each datum.
     pub at: Vec<f64>,
     /// Sites that are breaks; each is a control point.
@@ -37,7 +39,7 @@ pub struct InterpolationSpace {
     /// Knots as interpolations between two sites.
     knot_of: Vec<Share>,
     /// The datum at which a closed curve with breaks begins.
-    first: Option<usize>,
+    pub(super) first: Option<usize>,
     /// Curves beside the data where the space has far fewer control points than these.
     pub(crate) thin: Option<CurvesBesideData>,
 }
@@ -102,6 +104,7 @@ impl InterpolationSpace {
             sources: SparseRows::identity(n),
             polynomial: true,
             owner: (0..n).map(Some).collect(),
+            free: vec![false; n],
             at: at.to_vec(),
             marks: Vec::new(),
             site_of: (0..n).map(|k| (k, k, 0.0)).collect(),
@@ -255,6 +258,7 @@ impl InterpolationSpace {
             sites,
             sources,
             polynomial,
+            free: vec![false; owner.len()],
             owner,
             at,
             marks,
@@ -372,6 +376,7 @@ impl InterpolationSpace {
             sources: SparseRows::identity(n),
             polynomial: true,
             owner: (0..n).map(Some).collect(),
+            free: vec![false; n],
             at,
             marks: Vec::new(),
             rows,
@@ -380,6 +385,11 @@ impl InterpolationSpace {
             first: None,
             thin: Some(thin),
         }
+    }
+
+    /// True if there are knots between the data.
+    pub fn is_refined(&self) -> bool {
+        self.free.contains(&true)
     }
 
     /// True if there is a knot at each datum, so that the spline interpolates.
@@ -563,9 +573,12 @@ impl InterpolationSpace {
     }
 
     /// The tolerances of the sites; a point that completes a short piece has the largest tolerance
-    /// near it.
+    /// near it, a free one none.
     pub fn radii(&self, radii: &[f64]) -> Vec<f64> {
         let of = |k: usize| {
+            if self.free[k] {
+                return f64::INFINITY;
+            }
             let near = self.sources.row(k).0.iter().map(|&c| radii[c as usize]);
             near.fold(0.0, f64::max)
         };

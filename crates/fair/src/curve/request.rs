@@ -10,7 +10,9 @@ use crate::curve::thinning::thinned;
 use crate::curve::turning::{curvature_parameters, drafted_parameters, near_budget};
 use crate::interrogate::report::{FairingReport, report_of};
 use crate::optimum::goal::Goal;
-use crate::{FairError, InterpolationSpace, Limit, Measure, Motion, ShapeCondition};
+use crate::{
+    FairError, InterpolationSpace, Limit, Measure, Motion, ShapeCondition, ShapeConstraints,
+};
 use moldloft_num::{Real, Vec3};
 use moldloft_spline::SplineWithKnotDerivatives;
 
@@ -101,6 +103,9 @@ impl<T: Real> NearCurve<T> {
         SplineWithKnotDerivatives::new(space.degree(), Some(knots), control, None).ok()
     }
 }
+
+/// Parts of the intervals between data, until a shape holds.
+const PARTS: [usize; 3] = [1, 2, 4];
 
 const MERGED: &str = "no derivatives are available for curves through coincident points";
 
@@ -296,7 +301,51 @@ impl<T: Real> CurveRequest<T> {
             };
             data.layout = laid(&at)?;
         }
-        let (data, shape) = data.shaped(&self.shape)?;
+        let numbers = DataNumbers { points, tolerances, at: &at, demands: &self.conditions };
+        let lengths = lengths.as_ref().map(|data| (data, &by_length[..]));
+        let own_at = reals(&at);
+        // A shape that no spline with knots at the data has may need some between them.
+        let parts = if still && self.refines() { &PARTS[..] } else { &PARTS[..1] };
+        let mut refused = None;
+        for &parts in parts {
+            let mut own = data.clone();
+            if parts > 1 {
+                own.layout = data.layout.refined(&own_at, &self.breaks, self.closed, parts)?;
+            }
+            let (own, shape) = own.shaped(&self.shape)?;
+            let plane = shape.plane;
+            match self.shaped(own, shape, (measure, still), numbers, lengths) {
+                Ok((data, made, fit)) => return Ok(NearCurve { data, of, made, fit, measure }),
+                Err(error @ (FairError::Shape { .. } | FairError::Shapeless { .. })) => {
+                    if let Some(certain) = data.refuted(plane, &self.shape) {
+                        return Err(certain);
+                    }
+                    refused = Some(error);
+                }
+                Err(other) => return Err(other),
+            }
+        }
+        Err(refused.unwrap_or(FairError::Singular))
+    }
+
+    /// True if all shapes are conditions that knots between the data can help to meet.
+    fn refines(&self) -> bool {
+        let runs = |s: &ShapeCondition| {
+            matches!(s, ShapeCondition::Straight { .. } | ShapeCondition::Arc { .. })
+        };
+        !self.shape.is_empty() && !self.shape.iter().any(runs)
+    }
+
+    /// The curve of a shape on the layout of the data; `lengths` are the data by length with their parameters, if
+    /// those of the data follow the turns.
+    fn shaped(
+        &self,
+        data: Data,
+        shape: ShapeConstraints,
+        (measure, still): (Measure, bool),
+        numbers: DataNumbers<'_, T>,
+        lengths: Option<(&Data, &[f64])>,
+    ) -> Result<(Data, MovingFit<T>, DataFit), FairError> {
         let mut options = DataOptions::of(measure, self.goal);
         // Exact derivatives need to know which limits are reached; signs are not that exact.
         let least = if shape.is_empty() { ACCURACY } else { options.accuracy };
@@ -316,17 +365,16 @@ impl<T: Real> CurveRequest<T> {
         if self.draft && still {
             let fit = data.drafted(&options).map_err(own)?;
             let made = MovingFit::still(&data.layout, &fit);
-            return Ok(NearCurve { data, of, made, fit, measure });
+            return Ok((data, made, fit));
         }
         if !options.bends {
-            let own_at = reals(&at);
-            let turned = lengths.as_ref();
-            let turned = turned.map(|lengths| TurnedFrom { lengths, own: &own_at, at: &by_length });
+            let own_at: Vec<f64> = numbers.at.iter().map(|t| t.re()).collect();
+            let turned = lengths.map(|(lengths, at)| TurnedFrom { lengths, own: &own_at, at });
             let (layout, fit) = fair_turned(&data, &options, turned).map_err(own)?;
             if still {
                 let data = Data { layout: layout.unwrap_or_else(|| data.layout.clone()), ..data };
                 let made = MovingFit::still(&data.layout, &fit);
-                return Ok(NearCurve { data, of, made, fit, measure });
+                return Ok((data, made, fit));
             }
             // If no turn had to be removed, the result is the goal's own curve, which has
             // derivatives.
@@ -337,8 +385,7 @@ impl<T: Real> CurveRequest<T> {
             }
             options.bends = true;
         }
-        let numbers = DataNumbers { points, tolerances, at: &at, demands: &self.conditions };
         let (made, fit) = fair_data_under(&data, &options, numbers).map_err(own)?;
-        Ok(NearCurve { data, of, made, fit, measure })
+        Ok((data, made, fit))
     }
 }

@@ -53,7 +53,7 @@ impl CurvePlane {
         Some(Self { origin: points[0], axes: [a, normal.cross(a)] })
     }
 
-    fn down(&self, p: Vec3<f64>) -> P<f64> {
+    pub fn down(&self, p: Vec3<f64>) -> P<f64> {
         self.axes.map(|a| a.dot(p - self.origin))
     }
 
@@ -99,7 +99,7 @@ struct CollinearPoints {
 /// Shape conditions resolved for data; see [`Data::shaped`].
 #[derive(Clone, Debug, Default)]
 pub struct ShapeConstraints {
-    plane: Option<CurvePlane>,
+    pub(crate) plane: Option<CurvePlane>,
     signs: Vec<Signed>,
     lines: Vec<CollinearPoints>,
     /// Control points of arcs.

@@ -260,6 +260,7 @@ pub fn data<'py>(
     let at: Vec<f64> = of.iter().map(|&k| (data.layout.at[k] - a) / (b - a)).collect();
     dict.set_item("at", at.to_pyarray(py))?;
     dict.set_item("thin", !data.layout.interpolates())?;
+    dict.set_item("refined", data.layout.is_refined())?;
     dict.set_item("used", fit.used)?;
     dict.set_item("least", fit.least)?;
     dict.set_item("fairer", fit.fairer)?;
