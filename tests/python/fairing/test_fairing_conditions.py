@@ -7,6 +7,7 @@ import sys
 
 import numpy as np
 import pytest
+from scipy.interpolate import BSpline, make_interp_spline
 
 import moldloft
 from conftest import ROOT
@@ -315,9 +316,18 @@ def test_conditions_hold_whatever_way_points_move(motion, goal):
     x = np.linspace(0, 100, 60)
     noise = np.random.default_rng(3).uniform(-0.02, 0.02, 60)
     points = np.column_stack([x, 10 * np.sin(np.pi * x / 100) + noise])
-    for end in ("tangent", "curvature"):
+    for orders, end in ((2, "tangent"), (3, "curvature")):
         faired = moldloft.fair(points, 0.02, motion=motion, goal=goal, ends=end, spacing="chord")
         assert faired.deviation_sampled > 1e-3
+        # The ends of the curve through the points at the same parameters, by SciPy.
+        at, own = np.asarray(faired.parameters), faired.spline
+        knots = np.r_[[at[0]] * 4, at[2:-2], [at[-1]] * 4]
+        through = make_interp_spline(at, points, k=3, t=knots)
+        curve = BSpline(np.asarray(own.knots), np.asarray(own.control_points)[:, :2], own.degree)
+        for t in (0.0, 1.0):
+            for order in range(orders):
+                wanted = through(t, order)
+                assert np.abs(curve(t, order) - wanted).max() <= 1e-11 * (1 + np.abs(wanted).max())
     within = np.zeros(60)
     within[20:40] = 0.02
     faired = moldloft.fair(points, within, motion=motion, goal=goal, spacing="chord")
