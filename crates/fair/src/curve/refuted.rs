@@ -11,13 +11,13 @@ type P = [f64; 2];
 
 /// Turn of the polyline between the outer two of three points up to which they are compared: a
 /// quarter of a turn.
-const TURN: f64 = std::f64::consts::FRAC_PI_2;
+const MAX_TURN: f64 = std::f64::consts::FRAC_PI_2;
 
 /// Maximum number of points between the outer two of three.
-const WINDOW: usize = 200;
+const MAX_POINTS_BETWEEN: usize = 200;
 
 /// Amount, relative to the tolerances, by which three points refute a shape: above rounding.
-const CERTAIN: f64 = 1e-6;
+const LEAST_MISS: f64 = 1e-6;
 
 /// Three points that refute a sign, and by which distance.
 struct Refutation {
@@ -77,9 +77,9 @@ impl Data {
         let mut worst: Option<Refutation> = None;
         for i in from..last {
             let mut turn = 0.0;
-            for k in i + 2..=last.min(i + WINDOW) {
+            for k in i + 2..=last.min(i + MAX_POINTS_BETWEEN) {
                 turn += angle(flat[k - 2], flat[k - 1], flat[k]).abs();
-                if turn > TURN {
+                if turn > MAX_TURN {
                     break;
                 }
                 for j in i + 1..k {
@@ -94,7 +94,7 @@ impl Data {
                             beyond(points, radii.map(|r| r * corner), side)
                         }
                     };
-                    let certain = CERTAIN * radii.iter().sum::<f64>();
+                    let certain = LEAST_MISS * radii.iter().sum::<f64>();
                     if miss > certain && worst.as_ref().is_none_or(|w| miss > w.miss) {
                         worst = Some(Refutation { points: three, miss });
                     }

@@ -105,7 +105,7 @@ impl<T: Real> NearCurve<T> {
 }
 
 /// Parts of the intervals between data, until a shape holds.
-const PARTS: [usize; 3] = [1, 2, 4];
+const INTERVAL_PARTS: [usize; 3] = [1, 2, 4];
 
 const MERGED: &str = "no derivatives are available for curves through coincident points";
 
@@ -305,7 +305,8 @@ impl<T: Real> CurveRequest<T> {
         let lengths = lengths.as_ref().map(|data| (data, &by_length[..]));
         let own_at = reals(&at);
         // A shape that no spline with knots at the data has may need some between them.
-        let parts = if still && self.refines() { &PARTS[..] } else { &PARTS[..1] };
+        let parts =
+            if still && self.refines() { &INTERVAL_PARTS[..] } else { &INTERVAL_PARTS[..1] };
         let mut refused = None;
         for &parts in parts {
             let mut own = data.clone();

@@ -6,7 +6,7 @@ use crate::curve::job::Job;
 use crate::optimum::goal::Goal;
 
 /// Steps from the goal's budget to that of the fairest.
-const STEPS: usize = 4;
+const BUDGET_STEPS: usize = 4;
 
 /// Minimum ratio of the last budget to the first.
 const LEAST_WAY: f64 = 1.05;
@@ -30,8 +30,8 @@ impl Data {
         let fairest = DataOptions { goal: Goal::Fairest, shape, ..options.clone() };
         let fairest = self.under_shape(&fairest, job)?;
         let end = fairest.used.max(LEAST_WAY * budget);
-        for k in 0..=STEPS {
-            let own = budget * libm::pow(end / budget, k as f64 / STEPS as f64);
+        for k in 0..=BUDGET_STEPS {
+            let own = budget * libm::pow(end / budget, k as f64 / BUDGET_STEPS as f64);
             let goal = match options.goal {
                 Goal::Near(_) => Goal::Near(own),
                 _ => Goal::Budget(own),
