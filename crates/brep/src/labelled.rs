@@ -109,7 +109,23 @@ impl Brep {
         accuracy: f64,
         size: f64,
     ) -> Result<Vec<Vec3>, FacetFault> {
-        let mut work = LabelledBody::new(facets, accuracy, size)?;
+        let shown = vec![true; facets.surfaces.len()];
+        self.add_facets_on(facets, shown, accuracy, size)
+    }
+
+    /// Adds the faces of a body that are on the surfaces marked by `shown`; returns a point on its
+    /// face for each of their triangles. The other surfaces only bound these faces.
+    ///
+    /// # Errors
+    /// As [`Self::add_facets`].
+    pub fn add_facets_on(
+        &mut self,
+        facets: LabelledFacets,
+        shown: Vec<bool>,
+        accuracy: f64,
+        size: f64,
+    ) -> Result<Vec<Vec3>, FacetFault> {
+        let mut work = LabelledBody::new(facets, shown, accuracy, size)?;
         if !work.certain {
             work.join_islands();
         }
@@ -126,6 +142,8 @@ impl Brep {
 
 struct LabelledBody {
     net: FacetNet,
+    /// For each surface, whether its faces are wanted.
+    shown: Vec<bool>,
     /// The surfaces, and behind them the planes of seams.
     surfaces: Vec<SurfaceShape>,
     names: Vec<String>,
@@ -143,7 +161,12 @@ struct LabelledBody {
 }
 
 impl LabelledBody {
-    fn new(facets: LabelledFacets, accuracy: f64, size: f64) -> Result<Self, FacetFault> {
+    fn new(
+        facets: LabelledFacets,
+        shown: Vec<bool>,
+        accuracy: f64,
+        size: f64,
+    ) -> Result<Self, FacetFault> {
         let LabelledFacets { positions, triangles, mut labels, surfaces, names, .. } = facets;
         let place = positions.first().copied().unwrap_or_default();
         let Some(surfaces) = surfaces.into_iter().collect::<Option<Vec<SurfaceShape>>>() else {
@@ -153,7 +176,9 @@ impl LabelledBody {
         let near = NEAR * size;
         let first: Vec<u32> = (0..surfaces.len())
             .map(|k| {
-                let same = |&j: &usize| surfaces[j].is_same(&surfaces[k], near, size);
+                let same = |&j: &usize| {
+                    shown[j] == shown[k] && surfaces[j].is_same(&surfaces[k], near, size)
+                };
                 (0..k).find(same).unwrap_or(k) as u32
             })
             .collect();
@@ -166,6 +191,7 @@ impl LabelledBody {
         let net = FacetNet::new(positions, triangles, labels).map_err(open)?;
         Ok(Self {
             net,
+            shown,
             surfaces,
             names,
             colours: facets.colours,
@@ -191,6 +217,14 @@ impl LabelledBody {
             }
         }
         FacetFault { kind, surfaces: names, place }
+    }
+
+    /// True if a face beside a side of triangles is wanted.
+    fn is_shown_beside(&self, a: u32, b: u32) -> bool {
+        [(a, b), (b, a)].iter().any(|side| {
+            let label = self.net.labels[self.net.across[side] as usize];
+            self.shown[label as usize]
+        })
     }
 
     /// The typical length of sides round some borders: a small hole in a large disc has short ones.
@@ -236,7 +270,8 @@ impl LabelledBody {
             let corners = &self.net.triangles[*k];
             let image =
                 matches!(self.surfaces[self.net.labels[*k] as usize], SurfaceShape::Image(_));
-            corners.iter().all(|v| !touching.contains(v))
+            self.shown[self.net.labels[*k] as usize]
+                && corners.iter().all(|v| !touching.contains(v))
                 && !(image && corners.iter().any(|v| border.contains(v)))
         };
         (0..self.net.triangles.len()).filter(clear).map(middle).collect()
@@ -423,7 +458,7 @@ impl LabelledBody {
             let label = self.net.labels[k];
             let surface = self.surfaces[label as usize].clone();
             let is_image = matches!(surface, SurfaceShape::Image(_));
-            if surface.axes().is_none() && !is_image {
+            if !self.shown[label as usize] || surface.axes().is_none() && !is_image {
                 continue;
             }
             let place = self.net.corners(k)[0];
@@ -489,8 +524,10 @@ impl LabelledBody {
                     vertices.push(to);
                     (before, here) = (here, to);
                 }
-                let surfaces = borders[&ordered(start, first)];
-                self.chains.push(BorderChain { vertices, surfaces, exact: None });
+                if self.is_shown_beside(start, first) {
+                    let surfaces = borders[&ordered(start, first)];
+                    self.chains.push(BorderChain { vertices, surfaces, exact: None });
+                }
             }
         }
         for chain in &self.chains {
@@ -717,12 +754,17 @@ impl LabelledBody {
             brep.edges.push(BrepEdge { ends, curve, ellipse });
         }
         brep.gap = brep.gap.max(gap);
+        // No side of an open shell is the outer one.
+        let whole = self.shown.iter().all(|s| *s);
         let cavities = self.net.cavities();
         let mut by_group: BTreeMap<u32, Vec<usize>> = BTreeMap::new();
         for (k, g) in self.net.groups.iter().enumerate() {
             by_group.entry(*g).or_default().push(k);
         }
         for (group, members) in by_group {
+            if !self.shown[self.net.labels[members[0]] as usize] {
+                continue;
+            }
             let mut loops = self.net.loops(&members, &border, &first, &edges);
             let size = |cycle: &Vec<Coedge>| {
                 let points = cycle.iter().flat_map(|side| &brep.edges[side.edge].curve.points);
@@ -733,7 +775,7 @@ impl LabelledBody {
             if loops.is_empty() {
                 continue;
             }
-            let cavity = cavities[members[0]];
+            let cavity = whole && cavities[members[0]];
             brep.faces.push(self.face(group, &members, loops, cavity));
         }
         Ok(())

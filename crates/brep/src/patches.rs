@@ -857,4 +857,80 @@ mod tests {
         assert_eq!((brep.faces.len(), brep.edges.len(), brep.vertices.len()), (1, 4, 4));
         assert_eq!(brep.faces[0].loops.iter().map(Vec::len).collect::<Vec<_>>(), [4]);
     }
+
+    /// A disc of radius 1 as a coarse prism, of whose faces the top one is wanted.
+    fn disc() -> (LabelledFacets, Vec<bool>) {
+        const SIDES: u32 = 7;
+        let ring = |z: f64| {
+            (0..SIDES).map(move |k| {
+                let (sin, cos) =
+                    libm::sincos(f64::from(k) * std::f64::consts::TAU / f64::from(SIDES));
+                Vec3::of(cos, sin, z)
+            })
+        };
+        let mut positions: Vec<Vec3> = ring(0.0).chain(ring(1.0)).collect();
+        let [low, top] = [2 * SIDES, 2 * SIDES + 1];
+        positions.extend([Vec3::zero(), Vec3::of(0.0, 0.0, 1.0)]);
+        let (mut triangles, mut labels) = (Vec::new(), Vec::new());
+        for a in 0..SIDES {
+            let b = (a + 1) % SIDES;
+            let [c, d] = [a + SIDES, b + SIDES];
+            triangles.extend([[low, b, a], [top, c, d], [a, b, d], [a, d, c]]);
+            labels.extend([0, 1, 2, 2]);
+        }
+        let up = Vec3::of(0.0, 0.0, 1.0);
+        let plane = |origin| {
+            Some(SurfaceShape::Plane { origin, normal: up, axis: Vec3::of(1.0, 0.0, 0.0) })
+        };
+        let axes = crate::SurfaceAxes::about(Vec3::zero(), up);
+        let surfaces = vec![
+            plane(Vec3::zero()),
+            plane(up),
+            Some(SurfaceShape::Cylinder { axes, radius: 1.0 }),
+        ];
+        let facets = LabelledFacets {
+            positions,
+            triangles,
+            labels,
+            surfaces,
+            names: ["base", "top", "side"].map(str::to_owned).to_vec(),
+            colours: vec![None; 3],
+            layers: vec![Vec::new(); 3],
+            step: 1.0,
+            certain: false,
+        };
+        (facets, vec![false, true, false])
+    }
+
+    fn off_circle(brep: &Brep) -> f64 {
+        let ts: Vec<f64> = (0..=50).map(|k| f64::from(k) / 50.0).collect();
+        let places = brep.edges.iter().flat_map(|edge| edge.curve.grid(&[ts.clone()]));
+        let off = |p: Vec3| (libm::hypot(p.x, p.y) - 1.0).abs().max((p.z - 1.0).abs());
+        places.map(off).fold(0.0, f64::max)
+    }
+
+    #[test]
+    fn a_plane_sheet_ends_at_a_round_surface_within_the_accuracy() {
+        let (facets, shown) = disc();
+        let field = |k: u32, p: Vec3| match k {
+            0 => (p.z, Vec3::of(0.0, 0.0, 1.0)),
+            1 => (p.z - 1.0, Vec3::of(0.0, 0.0, 1.0)),
+            _ => (p.x * p.x + p.y * p.y - 1.0, Vec3::of(2.0 * p.x, 2.0 * p.y, 0.0)),
+        };
+        let mut brep = Brep::default();
+        brep.add_sheet(facets, shown, &field, 1e-6, 2.0).unwrap();
+        assert_eq!(brep.faces.len(), 1);
+        assert!(off_circle(&brep) <= 1e-6, "{}", off_circle(&brep));
+    }
+
+    #[test]
+    fn a_plane_sheet_ends_on_the_circle_in_which_it_meets_a_cylinder() {
+        let (facets, shown) = disc();
+        let mut brep = Brep::default();
+        let places = brep.add_facets_on(facets, shown, 1e-6, 2.0).unwrap();
+        assert!(places.iter().all(|p| (p.z - 1.0).abs() < 1e-12));
+        assert_eq!((brep.faces.len(), brep.edges.len()), (1, 1));
+        assert!(brep.edges[0].ellipse.is_some() && off_circle(&brep) < 1e-12);
+        assert!(brep.faces[0].exact && brep.faces[0].loops[0].len() == 1);
+    }
 }

@@ -314,7 +314,8 @@ impl PatchedBody<'_> {
         }
     }
 
-    /// Sides of round whole faces that are too far from these, to be halved; `near` are those that are known to be near.
+    /// Sides of round whole faces, and of faces beside others that are not wanted, that are too far
+    /// from these, to be halved; `near` are those that are known to be near.
     pub fn strayed_sides(
         &mut self,
         near: &mut FxHashMap<(u32, u32), f64>,
@@ -327,7 +328,8 @@ impl PatchedBody<'_> {
             .filter(|(a, b)| a < b && !near.contains_key(&(*a, *b)))
             .filter(|(a, b)| {
                 let [l, r] = self.beside(*a, *b);
-                l != r && (self.is_round(l) || self.is_round(r))
+                let beside = self.is_shown_surface(l) != self.is_shown_surface(r);
+                l != r && (self.is_round(l) || self.is_round(r) || beside)
             })
             .collect();
         sides.sort_unstable();
@@ -340,8 +342,8 @@ impl PatchedBody<'_> {
             }
             self.make_side(a, b)?;
             let net = self.side(a, b);
-            let labels: Vec<u32> =
-                self.beside(a, b).into_iter().filter(|l| self.is_whole(*l)).collect();
+            let bounds = |l: &u32| self.is_whole(*l) || !self.is_shown_surface(*l);
+            let labels: Vec<u32> = self.beside(a, b).into_iter().filter(bounds).collect();
             let labels = self.whole.with_cuts(&labels);
             let off = labels
                 .iter()

@@ -235,10 +235,6 @@ def test_sheets_of_sets_are_open_shells_of_their_area(seed: int, tmp_path: Path)
     assert found.area == pytest.approx(exact, rel=1e-4)
 
 
-@pytest.mark.xfail(
-    strict=True,
-    reason="a sheet that a ball crosses is refused as thinner than cells",
-)
 def test_a_sheet_beside_a_solid_ends_on_it(tmp_path: Path) -> None:
     from cad_reading import read
 

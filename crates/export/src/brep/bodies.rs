@@ -163,6 +163,15 @@ impl SetOfBody<'_> {
             labelled.colours[k] = info.colour.map(|c| PALETTE[usize::from(c & 15)]);
             labelled.layers[k] = info.tags.clone();
         }
+        if labelled.surfaces.iter().all(Option::is_some) {
+            let mut made = Brep::default();
+            let (whole, shown) = (labelled.clone(), sheet.shown.clone());
+            let places = made.add_facets_on(whole, shown, scale[0], scale[1]);
+            if self.judged(&made, places, facets.step, scale).is_none() {
+                brep.append(made);
+                return None;
+            }
+        }
         let mut made = Brep::default();
         let places = made.add_sheet(labelled, sheet.shown.clone(), &field, scale[0], scale[1]);
         let fault = self.judged(&made, places, facets.step, scale);
