@@ -1,5 +1,6 @@
 //! Convex hulls of sets, and Minkowski sums of convex ones.
 
+use super::discs::{Ring, of_discs, of_rings};
 use super::hull::{HullBall, Prism, of_balls, outermost};
 use crate::expr::form::Form;
 use crate::query::separation::solid_within;
@@ -9,12 +10,13 @@ use moldloft_num::{Axis, Real, Vec3};
 /// Angles, and lengths relative to the size, below which values are zero.
 const FLAT: f64 = 1e-9;
 
-/// A flat disc across an axis.
+/// A disc across an axis, with a ball of radius `tube` at each of its points.
 #[derive(Clone, Copy, Debug)]
 struct Disc<T> {
     centre: Vec3<T>,
     normal: Vec3<T>,
     radius: T,
+    tube: T,
 }
 
 /// Points, balls and discs whose hull the convex body is.
@@ -70,6 +72,11 @@ impl<T: Real> Spanning<T> {
                     })
                     .and_then(|found| one_nappe(axis, found))
                 }
+                Form::Torus { axis, major, minor } if planes.is_empty() => {
+                    let normal = crate::error::unit("axis", axis.direction)?;
+                    let disc = Disc { centre: axis.point, normal, radius: *major, tube: *minor };
+                    Ok(Self { balls: Vec::new(), discs: vec![disc] })
+                }
                 form if planes.is_empty() => no_hull(format!("a {}", form.name())),
                 form => no_hull(format!("a {} with planes", form.name())),
             },
@@ -107,7 +114,7 @@ impl<T: Real> Spanning<T> {
         }
         for h in [low, high] {
             let (centre, radius) = (axis.point + a * h, radius(h).unwrap_or(h));
-            found.discs.push(Disc { centre, normal: a, radius });
+            found.discs.push(Disc { centre, normal: a, radius, tube: T::from(0.0) });
         }
         let size = found.discs.iter().map(|d| d.radius.re()).fold(high.re() - low.re(), f64::max);
         let (points, discs) = found.discs.iter().partition(|d| d.radius.re() <= FLAT * size);
@@ -136,7 +143,7 @@ impl<T: Real> Spanning<T> {
                 let to = d.centre.re() - b.centre.re();
                 let n = d.normal.re();
                 let aside = (to - n * n.dot(to)).norm() + d.radius.re();
-                libm::hypot(aside, n.dot(to)) <= b.radius.re() * (1.0 + 1e-9)
+                libm::hypot(aside, n.dot(to)) + d.tube.re() <= b.radius.re() * (1.0 + 1e-9)
             })
         };
         self.discs.retain(|d| !covered(d));
@@ -199,8 +206,45 @@ impl<T: Real> Spanning<T> {
         match (&found.discs[..], &found.balls[..]) {
             ([], []) => Ok(Set::nothing()),
             ([], balls) => of_balls(balls),
-            _ => found.prism()?.hull(),
+            _ => found.across_one_axis(),
         }
+    }
+
+    /// The hull of discs with one axis, and of balls.
+    fn across_one_axis(&self) -> Result<Set<T>, FieldError> {
+        if self.discs.iter().all(|d| d.tube.re() == 0.0)
+            && let Ok(prism) = self.prism()
+        {
+            return prism.hull();
+        }
+        let axis = Axis { point: self.discs[0].centre, direction: self.discs[0].normal };
+        let n = axis.direction.re();
+        if self.discs.iter().any(|d| d.normal.re().cross(n).norm() > FLAT) {
+            return no_hull("cylinders or cones of different axes");
+        }
+        let zero = T::from(0.0);
+        let all: Vec<Disc<T>> = (self.discs.iter().copied())
+            .chain(self.balls.iter().map(|b| Disc {
+                centre: b.centre,
+                normal: axis.direction,
+                radius: zero,
+                tube: b.radius,
+            }))
+            .collect();
+        let reach =
+            |d: &Disc<T>| d.centre.re().distance(axis.point.re()) + d.radius.re() + d.tube.re();
+        let slack = FLAT * all.iter().map(reach).fold(0.0, f64::max);
+        let height = |d: &Disc<T>| axis.direction.dot(d.centre - axis.point);
+        let off = |d: &Disc<T>| (d.centre - axis.point).re().cross(n).norm();
+        if all.iter().all(|d| off(d) <= slack) {
+            let ring = |d: &Disc<T>| Ring { height: height(d), radius: d.radius, tube: d.tube };
+            return of_rings(axis, &all.iter().map(ring).collect::<Vec<_>>());
+        }
+        if all.iter().any(|d| d.tube.re() > slack) {
+            return no_hull("balls or tori beside the axis of cylinders, cones or tori");
+        }
+        let flat = |d: &Disc<T>| HullBall { centre: d.centre, radius: d.radius };
+        of_discs(axis.direction, &all.iter().map(flat).collect::<Vec<_>>())
     }
 
     fn sum(&self, o: &Self) -> Result<Set<T>, FieldError> {
@@ -227,20 +271,26 @@ impl<T: Real> Spanning<T> {
             _ => {
                 let all = |s: &Self| -> Vec<Disc<T>> {
                     let normal = self.discs[0].normal;
-                    let points =
-                        s.balls.iter().map(|b| Disc { centre: b.centre, normal, radius: b.radius });
+                    let points = s.balls.iter().map(|b| Disc {
+                        centre: b.centre,
+                        normal,
+                        radius: T::from(0.0),
+                        tube: b.radius,
+                    });
                     s.discs.iter().copied().chain(points).collect()
                 };
-                if [self, o].iter().any(|s| s.balls.iter().any(|b| b.radius.re() > 0.0)) {
-                    return no_hull("several balls beside cylinders or cones");
-                }
                 let (mine, others) = (all(self), all(o));
                 let each = |a: &Disc<T>| {
                     let a = *a;
                     others.iter().map(move |b| {
                         let normal =
                             if b.radius.re() > a.radius.re() { b.normal } else { a.normal };
-                        Disc { centre: a.centre + b.centre, normal, radius: a.radius + b.radius }
+                        Disc {
+                            centre: a.centre + b.centre,
+                            normal,
+                            radius: a.radius + b.radius,
+                            tube: a.tube + b.tube,
+                        }
                     })
                 };
                 let across =
@@ -249,7 +299,7 @@ impl<T: Real> Spanning<T> {
                     return no_hull("cylinders or cones of different axes");
                 }
                 let discs = mine.iter().flat_map(each).collect();
-                Self { balls: Vec::new(), discs }.prism()?.hull()
+                Self { balls: Vec::new(), discs }.across_one_axis()
             }
         }
     }
@@ -314,8 +364,8 @@ impl<T: Real> Set<T> {
 
 /// The convex hull of sets: the smallest convex set that holds all of them.
 ///
-/// Its surface is of planes, balls, cylinders and cones. The sets are unions of bounded polyhedra and balls, or of
-/// cylinders and right prisms of one axis between the same two planes.
+/// Its surface is of planes, balls, cylinders, cones and tori. The sets are unions of bounded polyhedra and balls; or of
+/// polyhedra, cylinders and cones of one axis direction; or of cylinders, cones, tori and balls about one axis.
 ///
 /// # Errors
 /// [`FieldError::NoHull`] for other sets; [`FieldError::Degenerate`] for a hull without volume.
@@ -350,6 +400,10 @@ pub fn convex_hull<T: Real>(sets: &[Set<T>]) -> Result<Set<T>, FieldError> {
 pub fn minkowski_sum<T: Real>(a: &Set<T>, b: &Set<T>) -> Result<Set<T>, FieldError> {
     let (mine, others) = (a.spanning()?, b.spanning()?);
     let mut all = Set::nothing();
+    // A torus is not convex.
+    if mine.iter().chain(&others).any(|s| s.discs.iter().any(|d| d.tube.re() > 0.0)) {
+        return no_hull("a torus");
+    }
     for p in &mine {
         for q in &others {
             all = all | p.sum(q)?;

@@ -8,10 +8,10 @@ use crate::{FieldError, Primitive, Set};
 use moldloft_num::{Axis, Real, Vec3};
 
 /// Balls that one hull may be spanned by.
-const MOST_BALLS: usize = 400;
+pub(super) const MOST_BALLS: usize = 400;
 
 /// Directions and points that differ by less than this, relative to the size, count as one.
-const SAME: f64 = 1e-10;
+pub(super) const SAME: f64 = 1e-10;
 
 /// A ball; of radius 0, a point. In a plane, a disc.
 #[derive(Clone, Copy, Debug)]
@@ -21,11 +21,11 @@ pub(super) struct HullBall<T> {
 }
 
 impl<T: Real> HullBall<T> {
-    fn re(&self) -> HullBall<f64> {
+    pub(super) fn re(&self) -> HullBall<f64> {
         HullBall { centre: self.centre.re(), radius: self.radius.re() }
     }
 
-    fn touch(&self, normal: Vec3<T>) -> Vec3<T> {
+    pub(super) fn touch(&self, normal: Vec3<T>) -> Vec3<T> {
         self.centre + normal * self.radius
     }
 }
@@ -46,12 +46,12 @@ pub(super) fn outermost<T: Real>(balls: &[HullBall<T>]) -> Vec<HullBall<T>> {
     (0..balls.len()).filter(|&i| !hidden(i)).map(|i| balls[i]).collect()
 }
 
-fn size(balls: &[HullBall<f64>]) -> f64 {
+pub(super) fn size(balls: &[HullBall<f64>]) -> f64 {
     let Some(first) = balls.first() else { return 0.0 };
     balls.iter().map(|b| b.centre.distance(first.centre) + b.radius).fold(first.radius, f64::max)
 }
 
-fn half_space<T: Real>(normal: Vec3<T>, point: Vec3<T>) -> Result<Set<T>, FieldError> {
+pub(super) fn half_space<T: Real>(normal: Vec3<T>, point: Vec3<T>) -> Result<Set<T>, FieldError> {
     Ok(Set::new(&Primitive::plane(normal, point)?))
 }
 
@@ -145,9 +145,8 @@ fn is_edge(balls: &[HullBall<f64>], i: usize, j: usize) -> bool {
     let across = (1.0 - rise * rise).max(0.0).sqrt();
     let Some(e1) = u.perpendicular().normalized() else { return false };
     let e2 = u.cross(e1);
-    // Intervals of the angle for which another ball is in front of the normal rise u + across (e1
-    // cos + e2 sin).
-    let mut forbidden: Vec<[f64; 2]> = Vec::new();
+    // Of the angle of the normal rise u + across (e1 cos + e2 sin), for each other ball.
+    let mut bounds: Vec<[f64; 3]> = Vec::new();
     for (m, ball) in balls.iter().enumerate() {
         if m == i || m == j {
             continue;
@@ -164,6 +163,16 @@ fn is_edge(balls: &[HullBall<f64>], i: usize, j: usize) -> bool {
             }
             continue;
         }
+        bounds.push([a, b, most]);
+    }
+    has_free_angle(&bounds, slack)
+}
+
+/// True if a cos + b sin <= most for all bounds [a, b, most] in an interval of the angle.
+pub(super) fn has_free_angle(bounds: &[[f64; 3]], slack: f64) -> bool {
+    let mut forbidden: Vec<[f64; 2]> = Vec::new();
+    for &[a, b, most] in bounds {
+        let reach = libm::hypot(a, b);
         if most >= reach - slack {
             continue;
         }
@@ -213,7 +222,7 @@ fn frustum<T: Real>(a: &HullBall<T>, b: &HullBall<T>) -> Result<Set<T>, FieldErr
 }
 
 /// The polyhedron spanned by points, as half-spaces; `None` if they are in a plane.
-fn polyhedron<T: Real>(
+pub(super) fn polyhedron<T: Real>(
     points: &[Vec3],
     visible: &[(Vec3<T>, Vec3<T>)],
 ) -> Result<Option<Set<T>>, FieldError> {
@@ -302,14 +311,14 @@ pub(super) struct Prism<T> {
 }
 
 /// A side of an outline: from one disc to the next.
-struct PrismSide<T> {
-    discs: [usize; 2],
-    normal: Vec3<T>,
+pub(super) struct PrismSide<T> {
+    pub(super) discs: [usize; 2],
+    pub(super) normal: Vec3<T>,
 }
 
 impl<T: Real> Prism<T> {
     /// The sides of the outline, counterclockwise about the axis.
-    fn sides(&self) -> Vec<PrismSide<T>> {
+    pub(super) fn sides(&self) -> Vec<PrismSide<T>> {
         let axis = self.axis.re();
         let flat = |v: Vec3| v - axis * axis.dot(v);
         let plain: Vec<HullBall<f64>> = (self.discs.iter())

@@ -4,6 +4,7 @@
 //! two faces that meet in them, which change of parameters leaves as they are.
 
 mod convex;
+mod discs;
 mod edges;
 mod hull;
 mod mitre;

@@ -9,6 +9,7 @@ mod csg;
 mod distances;
 mod faces;
 mod facets;
+mod hulls;
 mod mass;
 mod primitives;
 mod prisms;
