@@ -42,8 +42,9 @@ def convex_hull(
 ) -> Set:
     """The convex hull of sets: the smallest convex set that holds all of them.
 
-    Its surface is of planes, balls, cylinders and cones, and smooth where balls span it. The sets are unions of bounded
-    polyhedra and balls, or of cylinders and right prisms of one axis between the same two planes.
+    Its surface is of planes, balls, cylinders, cones and tori, and smooth where balls span it. The sets are unions of
+    bounded polyhedra and balls; or of polyhedra, cylinders and cones of one axis direction; or of cylinders, cones, tori
+    and balls about one axis.
 
     Parameters
     ----------
