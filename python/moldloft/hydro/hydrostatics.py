@@ -457,7 +457,15 @@ class Hydrostatics:
 
 
 def rounded_to_bound(flotation: Hydrostatics, name: str) -> Any:
-    """A figure for print: without digits far below its bound."""
+    """A figure for print: without digits far below its bound.
+
+    Parameters
+    ----------
+    flotation
+        The figures.
+    name
+        The name of one of them.
+    """
     value, bound = getattr(flotation, name), flotation.bounds.get(name, 0.0)
     if not isinstance(value, float) or not 0 < bound < math.inf:
         return value

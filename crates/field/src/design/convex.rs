@@ -1,6 +1,6 @@
 //! Convex hulls of sets, and Minkowski sums of convex ones.
 
-use super::discs::{Ring, of_discs, of_rings};
+use super::discs::{CoaxialRing, of_discs, of_rings};
 use super::hull::{HullBall, Prism, of_balls, outermost};
 use crate::expr::form::Form;
 use crate::query::separation::solid_within;
@@ -237,7 +237,8 @@ impl<T: Real> Spanning<T> {
         let height = |d: &Disc<T>| axis.direction.dot(d.centre - axis.point);
         let off = |d: &Disc<T>| (d.centre - axis.point).re().cross(n).norm();
         if all.iter().all(|d| off(d) <= slack) {
-            let ring = |d: &Disc<T>| Ring { height: height(d), radius: d.radius, tube: d.tube };
+            let ring =
+                |d: &Disc<T>| CoaxialRing { height: height(d), radius: d.radius, tube: d.tube };
             return of_rings(axis, &all.iter().map(ring).collect::<Vec<_>>());
         }
         if all.iter().any(|d| d.tube.re() > slack) {

@@ -14,7 +14,7 @@ use moldloft_num::{Axis, Real, Vec3};
 const FLAT: f64 = 1e-12;
 
 /// A circle about an axis at a height, as the centres of balls of radius `tube`.
-pub(super) struct Ring<T> {
+pub(super) struct CoaxialRing<T> {
     pub(super) height: T,
     pub(super) radius: T,
     pub(super) tube: T,
@@ -44,7 +44,10 @@ fn round_side<T: Real>(axis: Axis<T>, radius: T, slope: T) -> Result<Set<T>, Fie
 }
 
 /// The hull of rings about an axis with a unit direction.
-pub(super) fn of_rings<T: Real>(axis: Axis<T>, rings: &[Ring<T>]) -> Result<Set<T>, FieldError> {
+pub(super) fn of_rings<T: Real>(
+    axis: Axis<T>,
+    rings: &[CoaxialRing<T>],
+) -> Result<Set<T>, FieldError> {
     let up = axis.direction;
     let out = crate::error::unit("axis", up.perpendicular())?;
     // The outline in a plane through the axis, with its mirror image.

@@ -185,7 +185,7 @@ pub fn fault(error: &FieldError) -> CallError {
             fault.help("cut the edge off, or take `minkowski_sum` with a ball: its edges are round")
         }
         FieldError::NoHull { .. } => fault.expected(
-            "bounded polyhedra and balls, or cylinders and right prisms of one axis between the same two planes",
+            "bounded polyhedra and balls; polyhedra, cylinders and cones of one axis direction; or cylinders, cones, tori and balls about one axis",
         ),
         FieldError::EmptyBox { .. } => {
             fault.expected("low and high corners that differ along x, y and z")
