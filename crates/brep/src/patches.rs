@@ -904,7 +904,7 @@ mod tests {
 
     fn off_circle(brep: &Brep) -> f64 {
         let ts: Vec<f64> = (0..=50).map(|k| f64::from(k) / 50.0).collect();
-        let places = brep.edges.iter().flat_map(|edge| edge.curve.grid(&[ts.clone()]));
+        let places = brep.edges.iter().flat_map(|edge| edge.curve.grid(std::array::from_ref(&ts)));
         let off = |p: Vec3| (libm::hypot(p.x, p.y) - 1.0).abs().max((p.z - 1.0).abs());
         places.map(off).fold(0.0, f64::max)
     }
