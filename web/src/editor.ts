@@ -69,7 +69,8 @@ export class Editor {
   private readonly shared = new Compartment()
   private pushing = false
   private timer = 0
-  private online = false
+  /** Whether the hub has joined this text since the connection is there. */
+  online = false
   /** What changed the text lately, by the version that it changed. */
   private past: { version: number; changes: ChangeSet }[] = []
   /** The text that the hub is known to have. */
@@ -206,8 +207,8 @@ export class Editor {
 
   /** The connection is back, to the same hub: what it has and this page has not is taken. */
   async resume(): Promise<void> {
+    if (!(await this.catchUp())) return
     this.online = true
-    await this.catchUp()
     this.push()
   }
 
@@ -287,13 +288,16 @@ export class Editor {
     this.onPending(this.pending)
   }
 
-  private async catchUp(): Promise<void> {
+  /** Whether the connection held. */
+  private async catchUp(): Promise<boolean> {
     try {
       const answer = await this.link.tell({ kind: 'pull', file: this.file, version: this.version })
       if (typeof answer.text === 'string') this.rejoin(answer.text, answer.version)
       else this.received(answer.updates, answer.from)
+      return true
     } catch {
       // The next message finds it again.
+      return false
     }
   }
 

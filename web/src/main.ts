@@ -487,8 +487,8 @@ function measure(): void {
 
 link.onFrame = take
 link.onState = (state) => {
-  saving.online = state === 'up'
-  if (!saving.online) {
+  // The texts are online when they are joined with the server's.
+  if (state === 'down') {
     for (const one of files.all) one.offline()
     if (!link.still) warn('The server does not answer. What you type is kept here and sent when it is back.')
   }

@@ -18,7 +18,6 @@ function keeps(): boolean {
 
 export class Saving {
   files!: FileTabs
-  online = false
 
   constructor(
     private readonly link: Link,
@@ -38,6 +37,11 @@ export class Saving {
 
   private get dirty(): boolean {
     return this.files.all.some((editor) => editor.dirty)
+  }
+
+  /** Whether the program is joined with the server's: a connection alone is not enough. */
+  private get online(): boolean {
+    return !!this.files.of()?.online
   }
 
   private get pending(): boolean {
