@@ -31,7 +31,6 @@ __all__ = [
     "write_csv",
     "write_plot3d",
     "write_stl",
-    "write_vts",
 ]
 
 
@@ -318,7 +317,7 @@ def write(
     grids
         Arrays (ni, nj, 3), or (ni, nj, nk, 3) for Plot3D and VTK.
     names
-        Names of the zones of a CGNS file.
+        Names of the grids, for CGNS and VTK; ``grid1``, ``grid2``, ... by default.
 
     Returns
     -------
@@ -342,7 +341,7 @@ def encoded(
     grids
         Arrays (ni, nj, 3), or (ni, nj, nk, 3) for Plot3D and VTK.
     names
-        Names of the grids, for CGNS and VTK.
+        Names of the grids, for CGNS and VTK; ``grid1``, ``grid2``, ... by default.
 
     Returns
     -------
@@ -363,27 +362,6 @@ def _names(grids: Sequence[Any], names: Sequence[str] | None) -> list[str]:
     if len(words) != len(grids):
         raise Error(f"{len(grids)} grids, but {len(words)} names")
     return words
-
-
-def write_vts(path: str | Path, grids: Sequence[ArrayLike]) -> list[Path]:
-    """Write grids as VTK structured grids: one ``.vts``, or several with their ``.vtm``.
-
-    Parameters
-    ----------
-    path
-        The file of one grid; of several its stem is that of all files.
-    grids
-        Arrays (ni, nj, 3) or (ni, nj, nk, 3).
-
-    Returns
-    -------
-    list of pathlib.Path
-        The files, the main one first.
-    """
-    target = Path(path)
-    arrays = _grids(grids)
-    files = _core.write_grids(arrays, _names(arrays, None), "vts", target.name)
-    return commit(target.parent, [Output(name, data) for name, data in files], make=False)
 
 
 def write_cgns(

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import itertools
 import math
-import warnings
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -509,18 +508,6 @@ class GridFile:
         """True if it begins with the number of blocks."""
         return self.variant.multi
 
-    def __post_init__(self) -> None:
-        if isinstance(self.variant, str):
-            message = "GridFile takes a moldloft.grids.Plot3DVariant in place of a layout"
-            warnings.warn(message, DeprecationWarning, stacklevel=3)
-            self.variant = Plot3DVariant(layout=self.variant)
-
-    def encoded(self, grids: Sequence[Floats]) -> bytes:
-        """The content of the file with other coordinates; :meth:`write` replaces the file."""
-        message = "GridFile.encoded is GridFile.write, or moldloft.grids.encode_plot3d"
-        warnings.warn(message, DeprecationWarning, stacklevel=2)
-        return self._encoded(grids)
-
     def write(self, path: str | os.PathLike[str], grids: Sequence[Floats]) -> Path:
         """Write other coordinates in the same variant, in double precision.
 
@@ -528,16 +515,14 @@ class GridFile:
         is unchanged.
         """
         path = Path(path)
-        commit(path.parent, [Output(path.name, self._encoded(grids))], make=False)
-        return path
-
-    def _encoded(self, grids: Sequence[Floats]) -> bytes:
         flat = all((grid[..., 2] == 0).all() for grid in grids)
         variant = replace(self.variant, double=True, three=self.variant.three or not flat)
         blanks = self.iblank
         if blanks is not None and [b.shape for b in blanks] != [g.shape[:2] for g in grids]:
             blanks = None
-        return encode_plot3d(grids, variant, iblank=blanks)
+        data = encode_plot3d(grids, variant, iblank=blanks)
+        commit(path.parent, [Output(path.name, data)], make=False)
+        return path
 
 
 _GRID_SUFFIXES = {".p3d", ".plot3d", ".xyz", ".x", ".g", ".grd", ".fmt", ".grid"}

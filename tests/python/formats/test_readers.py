@@ -120,12 +120,3 @@ def test_all_readers_of_points_refuse_alike(tmp_path: Path, text: str) -> None:
     program.write_text('curve c = read_points("t.csv");')
     with pytest.raises(moldloft.ModelError, match=r"line \d: expected"):
         moldloft.load(program)
-
-
-def test_names_of_before_warn(tmp_path: Path) -> None:
-    grid = BLOCKS[0]
-    with pytest.warns(DeprecationWarning, match="Plot3DVariant"):
-        file = files.GridFile(tmp_path / "a.p3d", [], "stream")  # type: ignore[arg-type]
-    with pytest.warns(DeprecationWarning, match=r"GridFile\.write"):
-        data = file.encoded([grid])
-    assert data == grids.encode_plot3d([grid])

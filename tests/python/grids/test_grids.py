@@ -87,9 +87,9 @@ def test_refusals(tmp_path: Path) -> None:
 
 
 def test_vts_and_points(tmp_path: Path) -> None:
-    files = grids.write_vts(tmp_path / "two.vts", [body(), body()])
-    assert [f.suffix for f in files] == [".vtm", ".vts", ".vts"]
-    (one,) = grids.write_vts(tmp_path / "one.vts", [body()])
+    files = grids.write(tmp_path / "two.vts", [body(), body()], names=["hull", "fin"])
+    assert [f.name for f in files] == ["two.vtm", "two_hull.vts", "two_fin.vts"]
+    (one,) = grids.write(tmp_path / "one.vts", [body()])
     assert b'WholeExtent="0 59 0 19 0 0"' in one.read_bytes()
     points = body()[:, 3]
     path = grids.write_csv(tmp_path / "line.csv", points)
