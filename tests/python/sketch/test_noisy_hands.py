@@ -8,6 +8,7 @@ and the order of all points along each axis.
 from __future__ import annotations
 
 import os
+import re
 from itertools import pairwise
 
 import numpy as np
@@ -83,7 +84,13 @@ PARTS = {
 }
 
 
-def drawn(shape: Shape, noise: float, turn: float, rng: np.random.Generator) -> np.ndarray:
+def drawn(
+    shape: Shape,
+    noise: float,
+    turn: float,
+    rng: np.random.Generator,
+    axes: np.ndarray = np.array([345.0, 40.0, 90.0]),  # noqa: B008
+) -> np.ndarray:
     """The corners on the page: proportions off by a tenth, axes by `turn` degrees."""
     points, _ = shape
     wrong = np.empty_like(points)
@@ -91,7 +98,7 @@ def drawn(shape: Shape, noise: float, turn: float, rng: np.random.Generator) -> 
         levels, which = np.unique(points[:, axis], return_inverse=True)
         gaps = np.diff(levels) * np.exp(0.1 * rng.standard_normal(len(levels) - 1))
         wrong[:, axis] = np.concatenate([[0.0], np.cumsum(gaps)])[which]
-    angles = np.radians(np.array([345.0, 40.0, 90.0]) + turn * rng.standard_normal(3))
+    angles = np.radians(axes + turn * rng.standard_normal(3))
     page = wrong @ np.column_stack([np.cos(angles), np.sin(angles)])
     page *= 400.0 / np.ptp(page, axis=0).max()
     return page + noise * rng.standard_normal(page.shape)
@@ -141,3 +148,23 @@ def test_parts_are_as_meant(noise: float, turn: float, types: float, solids: flo
     slack = 0.0 if SOAK or noise == 0.0 else 1.5 / np.sqrt(count)
     assert right >= types - slack
     assert solid >= solids - slack
+
+
+@pytest.mark.parametrize(("noise", "found"), [(0.0, 0.95), (1.0, 0.9), (2.5, 0.8)])
+def test_axes_of_a_picture_are_found(noise: float, found: float) -> None:
+    """Axes at angles drawn at random, within 3 degrees; the hexagon shows only two of them."""
+    rng = np.random.default_rng(5)
+    right = count = 0
+    for name, shape in PARTS.items():
+        for _ in range(DRAWS if name != "hexagon" else 0):
+            angles = np.array([rng.uniform(335.0, 355.0), rng.uniform(28.0, 50.0), 90.0])
+            sketch = Sketch()
+            sketch.run("SKETCH A")
+            sketch.draw(drawn(shape, noise, 0.0, rng, angles), shape[1])
+            text = " ".join(reply.text for reply in sketch.run("AXES AUTO"))
+            at = re.findall(r"-?\d+\.\d+", text.partition("axes at ")[2])[:3]
+            off = (np.array([float(a) for a in at]) - angles + 90.0) % 180.0 - 90.0
+            right += bool((np.abs(off) <= 3.0).all())
+            count += 1
+    print(f"{noise}: {right} of {count}")
+    assert right >= found * count

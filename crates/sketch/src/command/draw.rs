@@ -407,9 +407,7 @@ impl SketchSession {
                 (None, None) => return Err(args.wants("the angle of Z")),
             };
         } else if args.take("AUTO") {
-            let strokes: Vec<[f64; 2]> =
-                object.drawing.lines.values().map(|l| object.drawing.stroke(l)).collect();
-            projection = Projection::cluster(&strokes).ok_or_else(|| {
+            projection = object.drawing.axes_of_lines().ok_or_else(|| {
                 CommandError::text(
                     "the lines do not show three directions",
                     "give the angles: AXES 345 40 90",

@@ -140,6 +140,13 @@ impl Drawing {
         left
     }
 
+    /// Types all lines, and counts the contradictions that remain.
+    pub(super) fn typed_contradictions(&mut self) -> usize {
+        self.type_all();
+        let loops = if self.section.is_none() { face_loops(&self.lines) } else { vec![] };
+        self.collapsed(&loops)
+    }
+
     /// Types lines by the planes that their ends share, as long as that types any.
     fn infer(&mut self, share: &dyn Fn(&LineId) -> f64) {
         loop {

@@ -6,6 +6,7 @@ mod face_loops;
 pub(crate) mod line_types;
 mod noise;
 mod open_depths;
+mod picture_axes;
 pub(crate) mod planes;
 pub(crate) mod projection;
 

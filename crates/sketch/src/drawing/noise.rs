@@ -10,7 +10,7 @@ use moldloft_num::union_find::UnionFind;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Prior fraction of lines along an axis.
-const PRINCIPAL: f64 = 0.85;
+pub(super) const PRINCIPAL: f64 = 0.85;
 
 /// Weight of the prior, in lines of a drawing.
 const USUAL_LINES: f64 = 6.0;
@@ -56,24 +56,36 @@ pub(crate) struct Verdict {
 }
 
 /// A line as it is judged.
-struct Stroke {
-    id: LineId,
+pub(super) struct Stroke {
+    pub id: LineId,
     ends: [PointId; 2],
-    d: [f64; 2],
-    length: f64,
+    pub d: [f64; 2],
+    pub length: f64,
+}
+
+/// The axes as a hand drew them, the noise of its pen, and what each stroke shows by itself.
+pub(super) struct PenFit {
+    pub axes: Vec<(CoordinateAxis, [f64; 2])>,
+    /// Standard deviation of a coordinate of an end.
+    sigma: f64,
+    /// Fraction of lines along an axis.
+    usual: f64,
+    alone: Vec<Verdict>,
 }
 
 impl Drawing {
-    /// The likeliest type of every line by its stroke and those that are parallel to it in space.
-    pub(crate) fn verdicts(&self) -> BTreeMap<LineId, Verdict> {
-        let strokes: Vec<Stroke> = (self.lines.iter())
+    pub(super) fn strokes(&self) -> Vec<Stroke> {
+        (self.lines.iter())
             .map(|(&id, line)| {
                 let d = self.stroke(line);
                 let length = Real::sqrt(d[0] * d[0] + d[1] * d[1]);
                 Stroke { id, ends: [line.p, line.q], d, length }
             })
             .filter(|s| s.length > 0.0)
-            .collect();
+            .collect()
+    }
+
+    pub(super) fn pen_fit(&self, strokes: &[Stroke]) -> PenFit {
         let given: Vec<(CoordinateAxis, [f64; 2])> = (CoordinateAxis::ALL.into_iter())
             .filter(|a| self.section != Some(*a))
             .filter_map(|a| {
@@ -83,7 +95,7 @@ impl Drawing {
             })
             .collect();
         let mut axes = given.clone();
-        let mut sigma = self.pen_noise(&strokes, &axes);
+        let mut sigma = self.pen_noise(strokes, &axes);
         let size = strokes.iter().map(|s| s.length).fold(0.0, f64::max);
         // The fraction of lines along an axis varies between drawings: the drawing's own, starting
         // from the prior.
@@ -94,10 +106,10 @@ impl Drawing {
             let along = |v: &Verdict| if v.axis.is_some() { v.share } else { 1.0 - v.share };
             let sum = alone.iter().map(along).sum::<f64>() + USUAL_LINES * PRINCIPAL;
             usual = sum / (alone.len() as f64 + USUAL_LINES);
-            axes = drawn_axes(&given, &strokes, &alone, sigma);
+            axes = drawn_axes(&given, strokes, &alone, sigma);
             // The noise by all lines that are likely along an axis.
             let (mut squares, mut weight) = (STEADY_LINES * (STEADY * size).powi(2), STEADY_LINES);
-            for (v, s) in alone.iter().zip(&strokes) {
+            for (v, s) in alone.iter().zip(strokes) {
                 let Some(axis) = v.axis else { continue };
                 let Some((_, unit)) = axes.iter().find(|a| a.0 == axis) else { continue };
                 let miss = s.d[0] * unit[1] - s.d[1] * unit[0];
@@ -106,6 +118,13 @@ impl Drawing {
             }
             sigma = Real::sqrt(squares / weight).clamp(LEAST * size, MOST * size);
         }
+        PenFit { axes, sigma, usual, alone }
+    }
+
+    /// The likeliest type of every line by its stroke and those that are parallel to it in space.
+    pub(crate) fn verdicts(&self) -> BTreeMap<LineId, Verdict> {
+        let strokes = self.strokes();
+        let PenFit { axes, sigma, usual, alone } = self.pen_fit(&strokes);
         // The lines beside each point, with their verdicts.
         let mut at: BTreeMap<PointId, Vec<usize>> = BTreeMap::new();
         for (k, s) in strokes.iter().enumerate() {
@@ -183,7 +202,7 @@ impl Drawing {
     }
 
     /// Standard deviation of a coordinate of an end, from the deviations of lines near an axis.
-    fn pen_noise(&self, strokes: &[Stroke], axes: &[(CoordinateAxis, [f64; 2])]) -> f64 {
+    pub(super) fn pen_noise(&self, strokes: &[Stroke], axes: &[(CoordinateAxis, [f64; 2])]) -> f64 {
         let size = strokes.iter().map(|s| s.length).fold(0.0, f64::max);
         let mut off: Vec<f64> = (strokes.iter())
             .filter_map(|s| {

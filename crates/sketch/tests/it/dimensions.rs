@@ -167,8 +167,7 @@ fn a_wobbly_sketch_is_still_estimated_well() {
 #[test]
 fn axes_from_an_untyped_picture() {
     let drawing = case_named("T9").object.drawing;
-    let strokes: Vec<[f64; 2]> = drawing.lines.values().map(|l| drawing.stroke(l)).collect();
-    let found = Projection::cluster(&strokes).unwrap();
+    let found = drawing.axes_of_lines().unwrap();
     for (angle, expected) in found.angle_deg.iter().zip([345.26, 40.06, 90.10]) {
         assert!((angle - expected).abs() < 0.05, "{angle} for {expected}");
     }

@@ -23,5 +23,4 @@ fn leaning_is_a_slope_even_for_a_vertical_axis() {
     assert_eq!(p.lean([0.0, 3.0], CoordinateAxis::Z), 0.0);
     assert_eq!(p.lean([1.0, 20.0], CoordinateAxis::Z), 0.05);
     assert_eq!(p.lean([0.0, 3.0], CoordinateAxis::X), f64::INFINITY);
-    assert!(Projection::cluster(&[[1.0, 0.0], [0.0, 1.0]]).is_none());
 }
