@@ -13,6 +13,12 @@ use std::sync::Arc;
 /// Bound on integers: from here on, not all integers are representable.
 pub const MOST_INT: f64 = 9_007_199_254_740_992.0;
 
+/// True when an int does not hold it.
+#[inline(always)]
+pub fn is_no_int(x: f64) -> bool {
+    x.fract() != 0.0 || x.abs() >= MOST_INT
+}
+
 /// The variable that a value is stored into.
 pub struct Taken<'a> {
     /// The declared type.

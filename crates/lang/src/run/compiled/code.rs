@@ -232,10 +232,6 @@ pub(super) enum ScalarOp {
         n: u16,
         origin: u16,
     },
-    ConstantText {
-        to: u16,
-        text: u16,
-    },
     CopyText {
         to: u16,
         a: u16,
@@ -310,6 +306,7 @@ pub(super) enum ScalarOp {
         variable: u16,
         origin: u16,
         exit: u16,
+        kept: bool,
     },
     WalkNext {
         at: u16,
@@ -398,6 +395,8 @@ pub(super) struct CodeArray {
     pub ty: Type,
     pub captured: bool,
     pub declared: bool,
+    /// A text that is written in the program.
+    pub text: Option<Arc<str>>,
 }
 
 /// An active loop: the register of its number, followed by that of its iteration.
@@ -537,7 +536,6 @@ pub(super) struct CodeUnit<T: Real> {
     /// Registers at the start of a call: constants.
     pub template: Vec<T>,
     pub sites: Vec<CodeSite>,
-    pub texts: Vec<Arc<str>>,
     pub formats: Vec<CodeFormat>,
     pub kernels: Vec<ArrayKernel<T>>,
     pub notes: Vec<(u16, CodeNote)>,
@@ -572,7 +570,6 @@ impl<T: Real> CodeUnit<T> {
             references: Vec::new(),
             template: Vec::new(),
             sites: Vec::new(),
-            texts: Vec::new(),
             formats: Vec::new(),
             kernels: Vec::new(),
             notes: Vec::new(),

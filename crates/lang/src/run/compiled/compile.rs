@@ -5,8 +5,8 @@
 //! again.
 
 use super::code::{
-    ActiveLoop, Captured, CodeArray, CodeNote, CodeRange, CodeRegion, CodeSite, CodeUnit,
-    Generation, NO_LABEL, NamePlace, Poisonable, RegionStart, Relation, ScalarOp,
+    ActiveLoop, Captured, CodeNote, CodeRange, CodeRegion, CodeSite, CodeUnit, Generation,
+    NO_LABEL, NamePlace, Poisonable, RegionStart, Relation, ScalarOp,
 };
 use super::names::{Meaning, ids};
 use super::registers::{UNDECLARED, declared_by};
@@ -398,11 +398,9 @@ impl<T: Scalar> RegionCompiler<'_, T> {
         let array = match self.progress[unit].free_texts.pop() {
             Some(array) => array,
             None => {
-                let array = self.units[unit].arrays.len() as u16;
-                let text =
-                    CodeArray { name: None, ty: Type::String, captured: false, declared: true };
-                self.units[unit].arrays.push(text);
-                self.set_known(Poisonable::Array(array), true, true);
+                let text = self.new_array(unit, None, Type::String, false, true);
+                let Poisonable::Array(array) = text else { unreachable!("an array was made") };
+                self.set_known(text, true, true);
                 array
             }
         };

@@ -1,11 +1,8 @@
 //! The machine that executes code.
 
-use super::code::{
-    CodeArgument, CodeNote, CodeRegion, CodeUnit, NO_LABEL, OF_FILE, Poisonable, ScalarOp,
-};
+use super::code::{CodeNote, CodeRegion, CodeUnit, NO_LABEL, OF_FILE, ScalarOp};
 use super::registers::{
-    ArrayItems, ArrayRegister, RegisterMachine, UNDECLARED, WaitingCall, declaration, declared_by,
-    is_live,
+    ArrayItems, ArrayRegister, RegisterMachine, UNDECLARED, declaration, declared_by, is_live,
 };
 use super::texts::formatted;
 use crate::array::lanes::not_finite;
@@ -14,7 +11,7 @@ use crate::run::interpreter::{Flow, Interpreter, MOST_CALLS, silent};
 use crate::run::usage;
 use crate::value::initialised::Known;
 use crate::value::ops;
-use crate::value::variables::{self, MOST_INT};
+use crate::value::variables::{self, is_no_int};
 use moldloft_diag::Diagnostic;
 use moldloft_num::{Real, Vec3};
 use moldloft_registry::{ArrayShape, Scalar, Value};
@@ -36,10 +33,7 @@ enum Departure<T> {
     Look,
     Fault,
     TooDeep,
-    Call {
-        to: u16,
-        site: u16,
-    },
+    /// What the caller does not take as it is.
     Return(T),
     ReturnVector([T; 3]),
     Leave,
@@ -72,12 +66,6 @@ fn element(shape: ArrayShape, i: f64, j: Option<f64>) -> Option<usize> {
     }
 }
 
-/// True when an int does not hold it.
-#[inline(always)]
-fn is_no_int(x: f64) -> bool {
-    x.fract() != 0.0 || x.abs() >= MOST_INT
-}
-
 impl<T: Scalar> Interpreter<'_, '_, T> {
     /// Executes code from the first operation of its entry to the end.
     pub(super) fn execute(
@@ -93,21 +81,11 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             self.quick(steps - self.usage.steps);
             self.turns = turns;
             let outcome = match departure {
-                Departure::Call { to, site } => match self.enter(region, machine, to, site) {
-                    true => continue,
-                    false => CodeOutcome::Stop,
-                },
-                Departure::Return(x) => match machine.returns_plainly(region, &[x]) {
-                    true => continue,
-                    false => self.returned_from(region, machine, Some(Value::Number(x))),
-                },
-                Departure::ReturnVector(v) => match machine.returns_plainly(region, &v) {
-                    true => continue,
-                    false => {
-                        let v = Value::Vector(Vec3::from(v));
-                        self.returned_from(region, machine, Some(v))
-                    }
-                },
+                Departure::Return(x) => self.returned_from(region, machine, Some(Value::Number(x))),
+                Departure::ReturnVector(v) => {
+                    let v = Value::Vector(Vec3::from(v));
+                    self.returned_from(region, machine, Some(v))
+                }
                 Departure::Look => match self.may_not_go_on(region, machine) {
                     true => CodeOutcome::Stop,
                     false => CodeOutcome::Next,
@@ -115,7 +93,11 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                 Departure::Fault => self.fault(region, machine),
                 Departure::TooDeep => {
                     let code = &region.units[machine.unit];
-                    self.too_many_calls(code.range(machine.pc).fault);
+                    let span = match code.code[machine.pc] {
+                        ScalarOp::Call { site, .. } => code.sites[site as usize].span,
+                        _ => code.range(machine.pc).fault,
+                    };
+                    self.too_many_calls(span);
                     CodeOutcome::Stop
                 }
                 Departure::Leave => self.returned_from(region, machine, None),
@@ -168,514 +150,465 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         look_at: u64,
     ) -> Departure<T> {
         let ieee = self.arrays.ieee;
-        let code = &region.units[machine.unit];
-        let ops = &code.code[..];
-        let executed = &mut machine.executed[machine.unit][..];
-        let (file, own) = machine.registers.split_at_mut(machine.first);
-        let own = &mut own[..code.template.len()];
-        let (marks_of_file, marks) = machine.marks.split_at_mut(machine.first_mark);
-        let (arrays_of_file, arrays) = machine.arrays.split_at_mut(machine.first_array);
         let (mut now, mut turned) = (*steps, *turns);
-        let mut pc = machine.pc;
-        macro_rules! at {
-            ($r:expr) => {
-                own[$r as usize]
-            };
-        }
-        macro_rules! array {
-            ($a:expr) => {{
-                let a = $a;
-                match a & OF_FILE {
-                    0 => &mut arrays[a as usize],
-                    _ => &mut arrays_of_file[(a & !OF_FILE) as usize],
-                }
-            }};
-        }
-        macro_rules! text {
-            ($a:expr) => {{
-                let a = $a;
-                match a & OF_FILE {
-                    0 => arrays[a as usize].text(),
-                    _ => arrays_of_file[(a & !OF_FILE) as usize].text(),
-                }
-            }};
-        }
-        macro_rules! three {
-            ($r:expr) => {
-                own[$r as usize..$r as usize + 3]
-            };
-        }
-        macro_rules! leave {
-            ($why:expr) => {{
-                machine.pc = pc - 1;
-                (*steps, *turns) = (now, turned);
-                return $why;
-            }};
-        }
-        macro_rules! fault {
-            () => {
-                leave!(Departure::Fault)
-            };
-        }
-        macro_rules! element {
-            ($array:expr, $i:expr, $j:expr) => {{
-                let j = if $j == NO_LABEL { None } else { Some(at!($j).re()) };
-                let i = at!($i).re();
-                let array = array!($array);
-                let Some(k) = element(array.shape, i, j) else { fault!() };
-                (array, k)
-            }};
-        }
-        macro_rules! finite {
-            ($to:expr, $x:expr) => {{
-                let x = $x;
-                if !x.is_finite() && !ieee {
-                    fault!();
-                }
-                at!($to) = x;
-            }};
-        }
-        // A step is counted once it is certain that the run may continue.
-        macro_rules! step {
-            () => {{
-                if now + 1 >= look_at {
-                    leave!(Departure::Look);
-                }
-                now += 1;
-            }};
-        }
-        // The first statement of a turn.
-        macro_rules! first_statement {
-            () => {
-                if let ScalarOp::Step(statement) = ops[pc]
-                    && now + 1 < look_at
-                {
-                    executed[statement as usize] = true;
+        'call: loop {
+            let code = &region.units[machine.unit];
+            let ops = &code.code[..];
+            let executed = &mut machine.executed[machine.unit][..];
+            let (file, own) = machine.registers.split_at_mut(machine.first);
+            let own = &mut own[..code.template.len()];
+            let (marks_of_file, marks) = machine.marks.split_at_mut(machine.first_mark);
+            let (arrays_of_file, arrays) = machine.arrays.split_at_mut(machine.first_array);
+            let mut pc = machine.pc;
+            macro_rules! at {
+                ($r:expr) => {
+                    own[$r as usize]
+                };
+            }
+            macro_rules! array {
+                ($a:expr) => {{
+                    let a = $a;
+                    match a & OF_FILE {
+                        0 => &mut arrays[a as usize],
+                        _ => &mut arrays_of_file[(a & !OF_FILE) as usize],
+                    }
+                }};
+            }
+            macro_rules! text {
+                ($a:expr) => {{
+                    let a = $a;
+                    match a & OF_FILE {
+                        0 => arrays[a as usize].text(),
+                        _ => arrays_of_file[(a & !OF_FILE) as usize].text(),
+                    }
+                }};
+            }
+            macro_rules! three {
+                ($r:expr) => {
+                    own[$r as usize..$r as usize + 3]
+                };
+            }
+            macro_rules! leave {
+                ($why:expr) => {{
+                    machine.pc = pc - 1;
+                    (*steps, *turns) = (now, turned);
+                    return $why;
+                }};
+            }
+            macro_rules! fault {
+                () => {
+                    leave!(Departure::Fault)
+                };
+            }
+            macro_rules! element {
+                ($array:expr, $i:expr, $j:expr) => {{
+                    let j = if $j == NO_LABEL { None } else { Some(at!($j).re()) };
+                    let i = at!($i).re();
+                    let array = array!($array);
+                    let Some(k) = element(array.shape, i, j) else { fault!() };
+                    (array, k)
+                }};
+            }
+            macro_rules! finite {
+                ($to:expr, $x:expr) => {{
+                    let x = $x;
+                    if !x.is_finite() && !ieee {
+                        fault!();
+                    }
+                    at!($to) = x;
+                }};
+            }
+            // A step is counted once it is certain that the run may continue.
+            macro_rules! step {
+                () => {{
+                    if now + 1 >= look_at {
+                        leave!(Departure::Look);
+                    }
                     now += 1;
-                    pc += 1;
-                }
-            };
-        }
-        macro_rules! for_test {
-            ($at:expr, $variable:expr, $register:expr, $origin:expr, $exit:expr, $kept:expr) => {{
-                let at = $at;
-                let k = at!(at + 3).re();
-                // NaN as the number of iterations means zero.
-                if k <= at!(at + 1).re() {
-                    let x = at!(at) + at!(at + 2) * k;
-                    at!($register) = x;
-                    marks[$variable as usize] = declared_by($origin);
-                    step!();
-                    turned += 1;
-                    if $kept {
-                        at!(at + 4) = x;
-                        at!(at + 5) = T::from(turned as f64);
+                }};
+            }
+            // The first statement of a turn.
+            macro_rules! first_statement {
+                () => {
+                    if let ScalarOp::Step(statement) = ops[pc]
+                        && now + 1 < look_at
+                    {
+                        executed[statement as usize] = true;
+                        now += 1;
+                        pc += 1;
                     }
-                    first_statement!();
-                } else {
-                    pc = $exit as usize;
-                }
-            }};
-        }
-        macro_rules! walk_test {
-            ($at:expr, $array:expr, $variable:expr, $origin:expr, $exit:expr) => {{
-                let at = $at;
-                let k = at!(at).re();
-                if k < at!(at + 1).re() {
-                    let (walked, k) = (&arrays[$array as usize], k as usize);
-                    let register = code.variables[$variable as usize].register;
-                    match code.arrays[$array as usize].ty {
-                        Type::Farray => at!(register) = walked.read()[k],
-                        _ => three!(register).copy_from_slice(&walked.vector(k)),
-                    }
-                    marks[$variable as usize] = declared_by($origin);
-                    step!();
-                    turned += 1;
-                    at!(at + 2) = T::from((k + 1) as f64);
-                    at!(at + 3) = T::from(turned as f64);
-                    first_statement!();
-                } else {
-                    pc = $exit as usize;
-                }
-            }};
-        }
-        loop {
-            pc += 1;
-            match ops[pc - 1] {
-                ScalarOp::Step(statement) => {
-                    executed[statement as usize] = true;
-                    step!();
-                }
-                ScalarOp::Steps(statement) => {
-                    executed[statement as usize] = true;
-                    if now + 2 >= look_at {
+                };
+            }
+            macro_rules! for_test {
+                ($at:expr, $variable:expr, $register:expr, $origin:expr, $exit:expr, $kept:expr) => {{
+                    let at = $at;
+                    let k = at!(at + 3).re();
+                    // NaN as the number of iterations means zero.
+                    if k <= at!(at + 1).re() {
+                        let x = at!(at) + at!(at + 2) * k;
+                        at!($register) = x;
+                        marks[$variable as usize] = declared_by($origin);
                         step!();
+                        turned += 1;
+                        if $kept {
+                            at!(at + 4) = x;
+                            at!(at + 5) = T::from(turned as f64);
+                        }
+                        first_statement!();
                     } else {
-                        executed[statement as usize + 1] = true;
-                        now += 2;
-                        pc += 1;
+                        pc = $exit as usize;
                     }
-                }
-                ScalarOp::Copy { to, a } => at!(to) = at!(a),
-                ScalarOp::CopyVector { to, a } => {
-                    own.copy_within(a as usize..a as usize + 3, to as usize);
-                }
-                ScalarOp::Add { to, a, b } => finite!(to, at!(a) + at!(b)),
-                ScalarOp::Sub { to, a, b } => finite!(to, at!(a) - at!(b)),
-                ScalarOp::Mul { to, a, b } => finite!(to, at!(a) * at!(b)),
-                ScalarOp::MulThenAdd { to, a, b, sum, c } => {
-                    finite!(to, at!(a) * at!(b));
-                    let x = at!(to) + at!(c);
-                    // A sum that is not finite is reported by the next operation.
-                    if x.is_finite() || ieee {
-                        at!(sum) = x;
-                        pc += 1;
+                }};
+            }
+            macro_rules! walk_test {
+                ($at:expr, $array:expr, $variable:expr, $origin:expr, $exit:expr, $kept:expr) => {{
+                    let at = $at;
+                    let k = at!(at).re();
+                    if k < at!(at + 1).re() {
+                        let (walked, k) = (&arrays[$array as usize], k as usize);
+                        let register = code.variables[$variable as usize].register;
+                        match code.arrays[$array as usize].ty {
+                            Type::Farray => at!(register) = walked.read()[k],
+                            _ => three!(register).copy_from_slice(&walked.vector(k)),
+                        }
+                        marks[$variable as usize] = declared_by($origin);
+                        step!();
+                        turned += 1;
+                        if $kept {
+                            at!(at + 2) = T::from((k + 1) as f64);
+                            at!(at + 3) = T::from(turned as f64);
+                        }
+                        first_statement!();
+                    } else {
+                        pc = $exit as usize;
                     }
-                }
-                ScalarOp::Div { to, a, b } => finite!(to, at!(a) / at!(b)),
-                ScalarOp::Power { to, a, b } => finite!(to, ops::power(at!(a), at!(b))),
-                // As `powi` does it.
-                ScalarOp::Square { to, a } => finite!(to, T::one() * (at!(a) * at!(a))),
-                ScalarOp::PowerWhole { to, a, k } => {
-                    finite!(to, ops::power_whole(at!(a), i32::from(k)))
-                }
-                ScalarOp::Negate { to, a } => at!(to) = -at!(a),
-                ScalarOp::Magnitude { to, a } => at!(to) = at!(a).abs(),
-                ScalarOp::Not { to, a } => {
-                    at!(to) = T::from(f64::from(u8::from(at!(a).re() == 0.0)));
-                }
-                ScalarOp::Compare { relation, to, a, b } => {
-                    let holds = relation.holds(at!(a).re(), at!(b).re());
-                    at!(to) = T::from(f64::from(u8::from(holds)));
-                }
-                ScalarOp::Apply { to, a, f } => {
-                    let Elementary::Unary(f) = region.functions[f as usize].1 else { fault!() };
-                    finite!(to, f(at!(a)));
-                }
-                ScalarOp::Apply2 { to, a, b, f } => {
-                    let Elementary::Binary(f) = region.functions[f as usize].1 else { fault!() };
-                    finite!(to, f(at!(a), at!(b)));
-                }
-                ScalarOp::Remainder { to, a, b, f } => {
-                    let (x, y) = (at!(a), at!(b));
-                    match small_remainder(x.re(), y.re()).filter(|_| T::PARTS == 1) {
-                        Some(rest) => at!(to) = T::from(rest),
-                        None => {
-                            let Elementary::Binary(f) = region.functions[f as usize].1 else {
-                                fault!()
-                            };
-                            finite!(to, f(x, y));
+                }};
+            }
+            loop {
+                pc += 1;
+                match ops[pc - 1] {
+                    ScalarOp::Step(statement) => {
+                        executed[statement as usize] = true;
+                        step!();
+                    }
+                    ScalarOp::Steps(statement) => {
+                        executed[statement as usize] = true;
+                        if now + 2 >= look_at {
+                            step!();
+                        } else {
+                            executed[statement as usize + 1] = true;
+                            now += 2;
+                            pc += 1;
                         }
                     }
-                }
-                ScalarOp::Combine { to, a, b, f } => {
-                    let Elementary::Binary(f) = region.functions[f as usize].1 else { fault!() };
-                    at!(to) = f(at!(a), at!(b));
-                }
-                ScalarOp::Finite { a } => {
-                    if !at!(a).is_finite() && !ieee {
-                        fault!();
+                    ScalarOp::Copy { to, a } => at!(to) = at!(a),
+                    ScalarOp::CopyVector { to, a } => {
+                        own.copy_within(a as usize..a as usize + 3, to as usize);
                     }
-                }
-                ScalarOp::Jump { to } => pc = to as usize,
-                ScalarOp::JumpUnless { a, to } => {
-                    if at!(a).re() == 0.0 {
-                        pc = to as usize;
+                    ScalarOp::Add { to, a, b } => finite!(to, at!(a) + at!(b)),
+                    ScalarOp::Sub { to, a, b } => finite!(to, at!(a) - at!(b)),
+                    ScalarOp::Mul { to, a, b } => finite!(to, at!(a) * at!(b)),
+                    ScalarOp::MulThenAdd { to, a, b, sum, c } => {
+                        finite!(to, at!(a) * at!(b));
+                        let x = at!(to) + at!(c);
+                        // A sum that is not finite is reported by the next operation.
+                        if x.is_finite() || ieee {
+                            at!(sum) = x;
+                            pc += 1;
+                        }
                     }
-                }
-                ScalarOp::JumpIfNot { relation, a, b, to } => {
-                    if !relation.holds(at!(a).re(), at!(b).re()) {
-                        pc = to as usize;
+                    ScalarOp::Div { to, a, b } => finite!(to, at!(a) / at!(b)),
+                    ScalarOp::Power { to, a, b } => finite!(to, ops::power(at!(a), at!(b))),
+                    // As `powi` does it.
+                    ScalarOp::Square { to, a } => finite!(to, T::one() * (at!(a) * at!(a))),
+                    ScalarOp::PowerWhole { to, a, k } => {
+                        finite!(to, ops::power_whole(at!(a), i32::from(k)))
                     }
-                }
-                ScalarOp::Load { to, array, i, j } => {
-                    let (array, k) = element!(array, i, j);
-                    at!(to) = array.read()[k];
-                }
-                ScalarOp::Store { array, i, j, a } => {
-                    let (array, k) = element!(array, i, j);
-                    array.write()[k] = at!(a);
-                    array.known.give_at(k);
-                }
-                ScalarOp::LoadVector { to, array, i, j } => {
-                    let (array, k) = element!(array, i, j);
-                    three!(to).copy_from_slice(&array.vector(k));
-                }
-                ScalarOp::StoreVector { array, i, j, a } => {
-                    let (array, k) = element!(array, i, j);
-                    array.put_vector(k, [at!(a), at!(a + 1), at!(a + 2)], None);
-                }
-                ScalarOp::StorePart { array, i, j, a, part } => {
-                    let (array, k) = element!(array, i, j);
-                    array.put_vector(k, [at!(a); 3], Some(part));
-                }
-                ScalarOp::Extent { to, array, k } => {
-                    let array = array!(array);
-                    let n = match (array.shape, k) {
-                        (ArrayShape::Row(n), 0) | (ArrayShape::Grid(n, _), 0) => n,
-                        (ArrayShape::Grid(_, n), 1) => n,
-                        _ => fault!(),
-                    };
-                    if n == 0 {
-                        fault!();
+                    ScalarOp::Negate { to, a } => at!(to) = -at!(a),
+                    ScalarOp::Magnitude { to, a } => at!(to) = at!(a).abs(),
+                    ScalarOp::Not { to, a } => {
+                        at!(to) = T::from(f64::from(u8::from(at!(a).re() == 0.0)));
                     }
-                    at!(to) = T::from(n as f64);
-                }
-                ScalarOp::Whole { to, a } => {
-                    let x = at!(a);
-                    if is_no_int(x.re()) {
-                        fault!();
+                    ScalarOp::Compare { relation, to, a, b } => {
+                        let holds = relation.holds(at!(a).re(), at!(b).re());
+                        at!(to) = T::from(f64::from(u8::from(holds)));
                     }
-                    at!(to) = x;
-                }
-                ScalarOp::Assign { variable, to, a } => {
-                    let x = at!(a);
-                    let mark = marks[variable as usize];
-                    if type_by(code, variable, mark) == Type::Int && is_no_int(x.re()) {
-                        fault!();
+                    ScalarOp::Apply { to, a, f } => {
+                        let Elementary::Unary(f) = region.functions[f as usize].1 else { fault!() };
+                        finite!(to, f(at!(a)));
                     }
-                    at!(to) = x;
-                }
-                ScalarOp::Live { variable } => {
-                    if !is_live(marks[variable as usize]) {
-                        fault!();
+                    ScalarOp::Apply2 { to, a, b, f } => {
+                        let Elementary::Binary(f) = region.functions[f as usize].1 else {
+                            fault!()
+                        };
+                        finite!(to, f(at!(a), at!(b)));
                     }
-                }
-                ScalarOp::LiveArray { array } => {
-                    if !is_live(array!(array).mark) {
-                        fault!();
+                    ScalarOp::Remainder { to, a, b, f } => {
+                        let (x, y) = (at!(a), at!(b));
+                        match small_remainder(x.re(), y.re()).filter(|_| T::PARTS == 1) {
+                            Some(rest) => at!(to) = T::from(rest),
+                            None => {
+                                let Elementary::Binary(f) = region.functions[f as usize].1 else {
+                                    fault!()
+                                };
+                                finite!(to, f(x, y));
+                            }
+                        }
                     }
-                }
-                ScalarOp::HasValue { array } => {
-                    if matches!(array!(array).items, ArrayItems::Nothing) {
-                        fault!();
+                    ScalarOp::Combine { to, a, b, f } => {
+                        let Elementary::Binary(f) = region.functions[f as usize].1 else {
+                            fault!()
+                        };
+                        at!(to) = f(at!(a), at!(b));
                     }
-                }
-                ScalarOp::Declare { variable, origin } => {
-                    marks[variable as usize] = declared_by(origin);
-                }
-                ScalarOp::DeclareArray { array, m, n, origin } => {
-                    let m = at!(m).re();
-                    let n = if n == NO_LABEL { None } else { Some(at!(n).re()) };
-                    let extents = (variables::extent(m).ok(), n.map(variables::extent));
-                    let shape = match extents {
-                        (Some(m), None) => ArrayShape::Row(m),
-                        (Some(m), Some(Ok(n))) => ArrayShape::Grid(m, n),
-                        _ => fault!(),
-                    };
-                    let count = m * n.unwrap_or(1.0);
-                    let ty = code.arrays[array as usize].ty;
-                    match variables::has_room::<T>(ty, count, self.inputs.budget) {
-                        Ok(of_elements) => now += of_elements,
-                        Err(_) => fault!(),
+                    ScalarOp::Finite { a } => {
+                        if !at!(a).is_finite() && !ieee {
+                            fault!();
+                        }
                     }
-                    let zeros = || vec![T::zero(); count as usize];
-                    let items = match ty {
-                        Type::Farray => ArrayItems::Owned(zeros()),
-                        _ => ArrayItems::OwnedVectors([zeros(), zeros(), zeros()]),
-                    };
-                    *array!(array) = ArrayRegister {
-                        items,
-                        shape,
-                        known: Known::nothing(count as usize),
-                        mark: declared_by(origin),
-                    };
-                }
-                ScalarOp::ConstantText { to, text } => {
-                    array!(to).items = ArrayItems::Text(code.texts[text as usize].clone());
-                }
-                ScalarOp::CopyText { to, a } => {
-                    let text = text!(a).clone();
-                    array!(to).items = ArrayItems::Text(text);
-                }
-                ScalarOp::JoinTexts { to, a, b } => {
-                    let Some(joined) = ops::joined(text!(a), text!(b)) else { fault!() };
-                    array!(to).items = ArrayItems::Text(joined);
-                }
-                ScalarOp::CompareTexts { relation, to, a, b } => {
-                    let holds = relation.holds(text!(a), text!(b));
-                    at!(to) = T::from(f64::from(u8::from(holds)));
-                }
-                ScalarOp::FormatText { to, format } => {
-                    let format = &code.formats[format as usize];
-                    let Some(text) = formatted(format, own, arrays, arrays_of_file) else {
-                        fault!()
-                    };
-                    array!(to).items = ArrayItems::Text(text);
-                }
-                ScalarOp::DeclareText { array, origin } => {
-                    array!(array).mark = declared_by(origin);
-                }
-                ScalarOp::LoadFile { to, of_file } => at!(to) = file[of_file as usize],
-                ScalarOp::StoreFile { of_file, a } => file[of_file as usize] = at!(a),
-                ScalarOp::WholeFile { of_file, a } => {
-                    let x = at!(a);
-                    if is_no_int(x.re()) {
-                        fault!();
+                    ScalarOp::Jump { to } => pc = to as usize,
+                    ScalarOp::JumpUnless { a, to } => {
+                        if at!(a).re() == 0.0 {
+                            pc = to as usize;
+                        }
                     }
-                    file[of_file as usize] = x;
-                }
-                ScalarOp::AssignFile { variable, of_file, a } => {
-                    let x = at!(a);
-                    let mark = marks_of_file[variable as usize];
-                    if type_by(&region.units[0], variable, mark) == Type::Int && is_no_int(x.re()) {
-                        fault!();
+                    ScalarOp::JumpIfNot { relation, a, b, to } => {
+                        if !relation.holds(at!(a).re(), at!(b).re()) {
+                            pc = to as usize;
+                        }
                     }
-                    file[of_file as usize] = x;
-                }
-                ScalarOp::LiveFile { variable } => {
-                    if !is_live(marks_of_file[variable as usize]) {
-                        fault!();
+                    ScalarOp::Load { to, array, i, j } => {
+                        let (array, k) = element!(array, i, j);
+                        at!(to) = array.read()[k];
                     }
-                }
-                ScalarOp::ForBegin { at } => {
-                    let [from, to, step] = [at!(at), at!(at + 1), at!(at + 2)].map(T::re);
-                    if step == 0.0 || !from.is_finite() || !to.is_finite() {
-                        fault!();
+                    ScalarOp::Store { array, i, j, a } => {
+                        let (array, k) = element!(array, i, j);
+                        array.write()[k] = at!(a);
+                        array.known.give_at(k);
                     }
-                    // Half a millionth of a step of slack, so that 0:1:0.1 has its last turn.
-                    at!(at + 1) = T::from(((to - from) / step + 5e-7).floor());
-                    at!(at + 3) = T::zero();
-                }
-                ScalarOp::ForTest { at, variable, register, origin, exit, kept } => {
-                    for_test!(at, variable, register, origin, exit, kept);
-                }
-                ScalarOp::ForNext { at, test } => {
-                    at!(at + 3) = T::from(at!(at + 3).re() + 1.0);
-                    pc = test as usize + 1;
-                    if let ScalarOp::ForTest { at, variable, register, origin, exit, kept } =
-                        ops[test as usize]
-                    {
+                    ScalarOp::LoadVector { to, array, i, j } => {
+                        let (array, k) = element!(array, i, j);
+                        three!(to).copy_from_slice(&array.vector(k));
+                    }
+                    ScalarOp::StoreVector { array, i, j, a } => {
+                        let (array, k) = element!(array, i, j);
+                        array.put_vector(k, [at!(a), at!(a + 1), at!(a + 2)], None);
+                    }
+                    ScalarOp::StorePart { array, i, j, a, part } => {
+                        let (array, k) = element!(array, i, j);
+                        array.put_vector(k, [at!(a); 3], Some(part));
+                    }
+                    ScalarOp::Extent { to, array, k } => {
+                        let array = array!(array);
+                        let n = match (array.shape, k) {
+                            (ArrayShape::Row(n), 0) | (ArrayShape::Grid(n, _), 0) => n,
+                            (ArrayShape::Grid(_, n), 1) => n,
+                            _ => fault!(),
+                        };
+                        if n == 0 {
+                            fault!();
+                        }
+                        at!(to) = T::from(n as f64);
+                    }
+                    ScalarOp::Whole { to, a } => {
+                        let x = at!(a);
+                        if is_no_int(x.re()) {
+                            fault!();
+                        }
+                        at!(to) = x;
+                    }
+                    ScalarOp::Assign { variable, to, a } => {
+                        let x = at!(a);
+                        let mark = marks[variable as usize];
+                        if type_by(code, variable, mark) == Type::Int && is_no_int(x.re()) {
+                            fault!();
+                        }
+                        at!(to) = x;
+                    }
+                    ScalarOp::Live { variable } => {
+                        if !is_live(marks[variable as usize]) {
+                            fault!();
+                        }
+                    }
+                    ScalarOp::LiveArray { array } => {
+                        if !is_live(array!(array).mark) {
+                            fault!();
+                        }
+                    }
+                    ScalarOp::HasValue { array } => {
+                        if matches!(array!(array).items, ArrayItems::Nothing) {
+                            fault!();
+                        }
+                    }
+                    ScalarOp::Declare { variable, origin } => {
+                        marks[variable as usize] = declared_by(origin);
+                    }
+                    ScalarOp::DeclareArray { array, m, n, origin } => {
+                        let m = at!(m).re();
+                        let n = if n == NO_LABEL { None } else { Some(at!(n).re()) };
+                        let extents = (variables::extent(m).ok(), n.map(variables::extent));
+                        let shape = match extents {
+                            (Some(m), None) => ArrayShape::Row(m),
+                            (Some(m), Some(Ok(n))) => ArrayShape::Grid(m, n),
+                            _ => fault!(),
+                        };
+                        let count = m * n.unwrap_or(1.0);
+                        let ty = code.arrays[array as usize].ty;
+                        match variables::has_room::<T>(ty, count, self.inputs.budget) {
+                            Ok(of_elements) => now += of_elements,
+                            Err(_) => fault!(),
+                        }
+                        let zeros = || vec![T::zero(); count as usize];
+                        let items = match ty {
+                            Type::Farray => ArrayItems::Owned(zeros()),
+                            _ => ArrayItems::OwnedVectors([zeros(), zeros(), zeros()]),
+                        };
+                        *array!(array) = ArrayRegister {
+                            items,
+                            shape,
+                            known: Known::nothing(count as usize),
+                            mark: declared_by(origin),
+                        };
+                    }
+                    ScalarOp::CopyText { to, a } => {
+                        let text = text!(a).clone();
+                        array!(to).items = ArrayItems::Text(text);
+                    }
+                    ScalarOp::JoinTexts { to, a, b } => {
+                        let Some(joined) = ops::joined(text!(a), text!(b)) else { fault!() };
+                        array!(to).items = ArrayItems::Text(joined);
+                    }
+                    ScalarOp::CompareTexts { relation, to, a, b } => {
+                        let holds = relation.holds(text!(a), text!(b));
+                        at!(to) = T::from(f64::from(u8::from(holds)));
+                    }
+                    ScalarOp::FormatText { to, format } => {
+                        let format = &code.formats[format as usize];
+                        let Some(text) = formatted(format, own, arrays, arrays_of_file) else {
+                            fault!()
+                        };
+                        array!(to).items = ArrayItems::Text(text);
+                    }
+                    ScalarOp::DeclareText { array, origin } => {
+                        array!(array).mark = declared_by(origin);
+                    }
+                    ScalarOp::LoadFile { to, of_file } => at!(to) = file[of_file as usize],
+                    ScalarOp::StoreFile { of_file, a } => file[of_file as usize] = at!(a),
+                    ScalarOp::WholeFile { of_file, a } => {
+                        let x = at!(a);
+                        if is_no_int(x.re()) {
+                            fault!();
+                        }
+                        file[of_file as usize] = x;
+                    }
+                    ScalarOp::AssignFile { variable, of_file, a } => {
+                        let x = at!(a);
+                        let mark = marks_of_file[variable as usize];
+                        if type_by(&region.units[0], variable, mark) == Type::Int
+                            && is_no_int(x.re())
+                        {
+                            fault!();
+                        }
+                        file[of_file as usize] = x;
+                    }
+                    ScalarOp::LiveFile { variable } => {
+                        if !is_live(marks_of_file[variable as usize]) {
+                            fault!();
+                        }
+                    }
+                    ScalarOp::ForBegin { at } => {
+                        let [from, to, step] = [at!(at), at!(at + 1), at!(at + 2)].map(T::re);
+                        if step == 0.0 || !from.is_finite() || !to.is_finite() {
+                            fault!();
+                        }
+                        // Half a millionth of a step of slack, so that 0:1:0.1 has its last turn.
+                        at!(at + 1) = T::from(((to - from) / step + 5e-7).floor());
+                        at!(at + 3) = T::zero();
+                    }
+                    ScalarOp::ForTest { at, variable, register, origin, exit, kept } => {
                         for_test!(at, variable, register, origin, exit, kept);
                     }
-                }
-                ScalarOp::WalkBegin { at, array, from } => {
-                    let walked = array!(from).passed(declared_by(0));
-                    at!(at) = T::zero();
-                    at!(at + 1) = T::from(walked.shape.count() as f64);
-                    arrays[array as usize] = walked;
-                }
-                ScalarOp::WalkTest { at, array, variable, origin, exit } => {
-                    walk_test!(at, array, variable, origin, exit);
-                }
-                ScalarOp::WalkNext { at, test } => {
-                    at!(at) = T::from(at!(at).re() + 1.0);
-                    pc = test as usize + 1;
-                    if let ScalarOp::WalkTest { at, array, variable, origin, exit } =
-                        ops[test as usize]
-                    {
-                        walk_test!(at, array, variable, origin, exit);
+                    ScalarOp::ForNext { at, test } => {
+                        at!(at + 3) = T::from(at!(at + 3).re() + 1.0);
+                        pc = test as usize + 1;
+                        if let ScalarOp::ForTest { at, variable, register, origin, exit, kept } =
+                            ops[test as usize]
+                        {
+                            for_test!(at, variable, register, origin, exit, kept);
+                        }
                     }
-                }
-                ScalarOp::WalkEnd { array } => {
-                    arrays[array as usize] = ArrayRegister::nothing(UNDECLARED);
-                }
-                ScalarOp::Label { at, variable } => {
-                    let live = is_live(marks[variable as usize]);
-                    let register = code.variables[variable as usize].register;
-                    at!(at) = if live { at!(register) } else { T::from(f64::NAN) };
-                }
-                ScalarOp::Turn { at, label } => {
-                    step!();
-                    turned += 1;
-                    if label != NO_LABEL {
-                        at!(at) = at!(label);
+                    ScalarOp::WalkBegin { at, array, from } => {
+                        let walked = array!(from).passed(declared_by(0));
+                        at!(at) = T::zero();
+                        at!(at + 1) = T::from(walked.shape.count() as f64);
+                        arrays[array as usize] = walked;
                     }
-                    at!(at + 1) = T::from(turned as f64);
-                }
-                ScalarOp::Called => {
-                    now += 4;
-                    if machine.frames + machine.waiting.len() >= MOST_CALLS {
-                        leave!(Departure::TooDeep);
+                    ScalarOp::WalkTest { at, array, variable, origin, exit, kept } => {
+                        walk_test!(at, array, variable, origin, exit, kept);
                     }
+                    ScalarOp::WalkNext { at, test } => {
+                        at!(at) = T::from(at!(at).re() + 1.0);
+                        pc = test as usize + 1;
+                        if let ScalarOp::WalkTest { at, array, variable, origin, exit, kept } =
+                            ops[test as usize]
+                        {
+                            walk_test!(at, array, variable, origin, exit, kept);
+                        }
+                    }
+                    ScalarOp::WalkEnd { array } => {
+                        arrays[array as usize] = ArrayRegister::nothing(UNDECLARED);
+                    }
+                    ScalarOp::Label { at, variable } => {
+                        let live = is_live(marks[variable as usize]);
+                        let register = code.variables[variable as usize].register;
+                        at!(at) = if live { at!(register) } else { T::from(f64::NAN) };
+                    }
+                    ScalarOp::Turn { at, label } => {
+                        step!();
+                        turned += 1;
+                        if label != NO_LABEL {
+                            at!(at) = at!(label);
+                        }
+                        at!(at + 1) = T::from(turned as f64);
+                    }
+                    ScalarOp::Called => {
+                        now += 4;
+                        if machine.frames + machine.waiting.len() >= MOST_CALLS {
+                            leave!(Departure::TooDeep);
+                        }
+                    }
+                    ScalarOp::Call { to, site } => {
+                        machine.pc = pc - 1;
+                        now += 4;
+                        if machine.enters(region, to, site, self.usage.errors) {
+                            continue 'call;
+                        }
+                        leave!(Departure::TooDeep)
+                    }
+                    ScalarOp::Return { a } => {
+                        let x = at!(a);
+                        machine.pc = pc - 1;
+                        if machine.returns_plainly(region, &[x]) {
+                            continue 'call;
+                        }
+                        leave!(Departure::Return(x))
+                    }
+                    ScalarOp::ReturnVector { a } => {
+                        let v = [at!(a), at!(a + 1), at!(a + 2)];
+                        machine.pc = pc - 1;
+                        if machine.returns_plainly(region, &v) {
+                            continue 'call;
+                        }
+                        leave!(Departure::ReturnVector(v))
+                    }
+                    ScalarOp::Leave => leave!(Departure::Leave),
+                    ScalarOp::End => leave!(Departure::End),
+                    ScalarOp::Interpret { site } => leave!(Departure::Interpret { site }),
+                    ScalarOp::Condition { to, site } => leave!(Departure::Condition { to, site }),
+                    ScalarOp::Kernel { kernel } => leave!(Departure::Kernel(kernel)),
                 }
-                ScalarOp::Call { to, site } => leave!(Departure::Call { to, site }),
-                ScalarOp::Return { a } => leave!(Departure::Return(at!(a))),
-                ScalarOp::ReturnVector { a } => {
-                    leave!(Departure::ReturnVector([at!(a), at!(a + 1), at!(a + 2)]))
-                }
-                ScalarOp::Leave => leave!(Departure::Leave),
-                ScalarOp::End => leave!(Departure::End),
-                ScalarOp::Interpret { site } => leave!(Departure::Interpret { site }),
-                ScalarOp::Condition { to, site } => leave!(Departure::Condition { to, site }),
-                ScalarOp::Kernel { kernel } => leave!(Departure::Kernel(kernel)),
             }
         }
-    }
-
-    /// A routine is called; false when there are too many calls, which is reported.
-    fn enter(
-        &mut self,
-        region: &CodeRegion<T>,
-        machine: &mut RegisterMachine<T>,
-        to: u16,
-        site: u16,
-    ) -> bool {
-        let code = &region.units[machine.unit];
-        let called = &code.sites[site as usize];
-        let callee = &region.units[called.unit];
-        self.quick(4);
-        let caller = WaitingCall {
-            unit: machine.unit,
-            pc: machine.pc,
-            registers: machine.first,
-            marks: machine.first_mark,
-            arrays: machine.first_array,
-            to,
-            site,
-            errors: self.usage.errors,
-        };
-        machine.waiting.push(caller);
-        if machine.frames + machine.waiting.len() > MOST_CALLS {
-            self.too_many_calls(called.span);
-            return false;
-        }
-        let first = machine.first + code.template.len();
-        let (end, marks) =
-            (first + callee.template.len(), machine.first_mark + code.variables.len());
-        let end_of_marks = marks + callee.variables.len();
-        if machine.registers.len() < end {
-            machine.registers.resize(2 * end, T::zero());
-        }
-        if machine.marks.len() < end_of_marks {
-            machine.marks.resize(2 * end_of_marks, UNDECLARED);
-        }
-        machine.registers[first..end].copy_from_slice(&callee.template);
-        machine.marks[marks..end_of_marks].copy_from_slice(&callee.marks);
-        let arrays = machine.arrays.len();
-        if !callee.arrays.is_empty() {
-            let none = || ArrayRegister::nothing(UNDECLARED);
-            machine.arrays.resize_with(arrays + callee.arrays.len(), none);
-        }
-        for (k, (formal, argument)) in callee.formals.iter().zip(&called.args).enumerate() {
-            match (*formal, *argument) {
-                (None, CodeArgument::OfFile) => {}
-                (Some(Poisonable::Variable(v)), CodeArgument::Vector { from }) => {
-                    let to = first + callee.variables[v as usize].register as usize;
-                    let from = machine.first + from as usize;
-                    machine.registers.copy_within(from..from + 3, to);
-                }
-                (Some(Poisonable::Variable(v)), CodeArgument::Number { from }) => {
-                    let register = callee.variables[v as usize].register as usize;
-                    machine.registers[first + register] =
-                        machine.registers[machine.first + from as usize];
-                }
-                (Some(Poisonable::Array(a)), CodeArgument::Array { from }) => {
-                    let own = machine.first_array + from as usize;
-                    let of_file = (from & !OF_FILE) as usize;
-                    let from = if from & OF_FILE == 0 { own } else { of_file };
-                    let passed = machine.arrays[from].passed(declared_by(k as u16));
-                    machine.arrays[arrays + a as usize] = passed;
-                }
-                _ => unreachable!("arguments are of their formals' kinds"),
-            }
-        }
-        machine.unit = called.unit;
-        machine.first = first;
-        machine.first_mark = marks;
-        machine.first_array = arrays;
-        machine.pc = 0;
-        true
     }
 
     /// Looks whether the run must stop, which is reported then.

@@ -318,7 +318,7 @@ impl<T: Scalar> RegionCompiler<'_, T> {
         declared: bool,
     ) -> Poisonable {
         let at = self.units[unit].arrays.len() as u16;
-        self.units[unit].arrays.push(CodeArray { name, ty, captured, declared });
+        self.units[unit].arrays.push(CodeArray { name, ty, captured, declared, text: None });
         let what = Poisonable::Array(at);
         if let Some(name) = name {
             self.names[unit].insert(name, what);

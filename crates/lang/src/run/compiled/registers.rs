@@ -1,11 +1,12 @@
 //! The registers of compiled code, and their exchange with the interpreter's variables.
 
-use super::code::{ActiveLoop, Captured, CodeRegion, NO_LABEL, Poisonable};
-use crate::run::interpreter::Interpreter;
+use super::code::{ActiveLoop, Captured, CodeArgument, CodeRegion, NO_LABEL, OF_FILE, Poisonable};
+use crate::run::interpreter::{Interpreter, MOST_CALLS};
 use crate::source::module::Name;
 use crate::source::scope::{Binding, CallFrame, LoopIteration, ScopedBinding};
 use crate::value::initialised::Known;
 use crate::value::subarray::Place;
+use crate::value::variables::is_no_int;
 use moldloft_num::{Real, Vec3};
 use moldloft_registry::{Array, ArrayShape, Scalar, Value, Vectors};
 use moldloft_syntax::sdl::Type;
@@ -264,7 +265,11 @@ impl<T: Scalar> RegisterMachine<T> {
             }
             for array in &code.arrays {
                 let mark = if array.captured { AS_BEFORE } else { UNDECLARED };
-                machine.arrays.push(ArrayRegister::nothing(mark));
+                let mut register = ArrayRegister::nothing(mark);
+                if let Some(text) = &array.text {
+                    register.items = ArrayItems::Text(text.clone());
+                }
+                machine.arrays.push(register);
             }
         }
         machine
@@ -280,12 +285,75 @@ impl<T: Scalar> RegisterMachine<T> {
         self.first_array = call.arrays;
     }
 
-    /// Goes back to the call that waits with a number for a float, or a vector for a vector, when no frame of the
-    /// interpreter was made: the usual case. False when it is another.
+    /// Begins the call of a site; false when there are too many calls.
+    #[inline]
+    pub fn enters(&mut self, region: &CodeRegion<T>, to: u16, site: u16, errors: usize) -> bool {
+        if self.frames + self.waiting.len() >= MOST_CALLS {
+            return false;
+        }
+        let code = &region.units[self.unit];
+        let called = &code.sites[site as usize];
+        let callee = &region.units[called.unit];
+        self.waiting.push(WaitingCall {
+            unit: self.unit,
+            pc: self.pc,
+            registers: self.first,
+            marks: self.first_mark,
+            arrays: self.first_array,
+            to,
+            site,
+            errors,
+        });
+        let first = self.first + code.template.len();
+        let (end, marks) = (first + callee.template.len(), self.first_mark + code.variables.len());
+        let end_of_marks = marks + callee.variables.len();
+        if self.registers.len() < end {
+            self.registers.resize(2 * end, T::zero());
+        }
+        if self.marks.len() < end_of_marks {
+            self.marks.resize(2 * end_of_marks, UNDECLARED);
+        }
+        self.registers[first..end].copy_from_slice(&callee.template);
+        self.marks[marks..end_of_marks].copy_from_slice(&callee.marks);
+        let arrays = self.arrays.len();
+        if !callee.arrays.is_empty() {
+            let none = || ArrayRegister::nothing(UNDECLARED);
+            self.arrays.resize_with(arrays + callee.arrays.len(), none);
+        }
+        for (k, (formal, argument)) in callee.formals.iter().zip(&called.args).enumerate() {
+            match (*formal, *argument) {
+                (None, CodeArgument::OfFile) => {}
+                (Some(Poisonable::Variable(v)), CodeArgument::Vector { from }) => {
+                    let to = first + callee.variables[v as usize].register as usize;
+                    let from = self.first + from as usize;
+                    self.registers.copy_within(from..from + 3, to);
+                }
+                (Some(Poisonable::Variable(v)), CodeArgument::Number { from }) => {
+                    let register = callee.variables[v as usize].register as usize;
+                    self.registers[first + register] = self.registers[self.first + from as usize];
+                }
+                (Some(Poisonable::Array(a)), CodeArgument::Array { from }) => {
+                    let own = self.first_array + from as usize;
+                    let of_file = (from & !OF_FILE) as usize;
+                    let from = if from & OF_FILE == 0 { own } else { of_file };
+                    let passed = self.arrays[from].passed(declared_by(k as u16));
+                    self.arrays[arrays + a as usize] = passed;
+                }
+                _ => unreachable!("arguments are of their formals' kinds"),
+            }
+        }
+        (self.unit, self.pc) = (called.unit, 0);
+        (self.first, self.first_mark, self.first_array) = (first, marks, arrays);
+        true
+    }
+
+    /// Goes back to the call that waits with a number of the routine's type, or a vector for a vector, when no frame of
+    /// the interpreter was made: the usual case. False when it is another.
     #[inline]
     pub fn returns_plainly(&mut self, region: &CodeRegion<T>, x: &[T]) -> bool {
         let fits = match self.result_of(region) {
             Some(Type::Float) => x.len() == 1,
+            Some(Type::Int) => x.len() == 1 && !is_no_int(x[0].re()),
             Some(Type::Vector) => x.len() == 3,
             _ => false,
         };

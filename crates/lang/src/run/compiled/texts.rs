@@ -1,6 +1,8 @@
 //! Texts in code: constants, variables, joined texts, comparisons and `format`.
 
-use super::code::{CodeArgument, CodeFormat, CodeNote, OF_FILE, Poisonable, Relation, ScalarOp};
+use super::code::{
+    CodeArgument, CodeArray, CodeFormat, CodeNote, OF_FILE, Poisonable, Relation, ScalarOp,
+};
 use super::compile::{RegionCompiler, Unfit};
 use super::names::Meaning;
 use super::registers::ArrayRegister;
@@ -78,15 +80,24 @@ impl<T: Scalar> RegionCompiler<'_, T> {
     }
 
     pub fn constant_text(&mut self, text: &str, want: Option<u16>) -> Result<u16, Unfit> {
-        let texts = &mut self.units[self.unit].texts;
-        let at = texts.iter().position(|known| &**known == text).unwrap_or_else(|| {
-            texts.push(Arc::from(text));
-            texts.len() - 1
+        // They are among the texts of the file, which stay.
+        let all = &mut self.units[0].arrays;
+        let at = all.iter().position(|a| a.text.as_deref() == Some(text)).unwrap_or_else(|| {
+            all.push(CodeArray {
+                name: None,
+                ty: Type::String,
+                captured: false,
+                declared: true,
+                text: Some(Arc::from(text)),
+            });
+            all.len() - 1
         });
-        let text = u16::try_from(at).map_err(|_| Unfit::Unit)?;
-        let to = self.text_result(want);
-        self.emit(ScalarOp::ConstantText { to, text })?;
-        Ok(to)
+        self.set_known_in(0, Poisonable::Array(at as u16), true, true);
+        let a = at as u16 | if self.unit == 0 { 0 } else { OF_FILE };
+        if let Some(to) = want {
+            self.emit(ScalarOp::CopyText { to, a })?;
+        }
+        Ok(want.unwrap_or(a))
     }
 
     fn text_result(&mut self, want: Option<u16>) -> u16 {

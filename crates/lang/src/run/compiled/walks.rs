@@ -40,13 +40,20 @@ impl<T: Scalar> RegionCompiler<'_, T> {
         self.forget(&[body])?;
         let before = self.sure();
         let origin = self.origin(variable.span, element)?;
-        let op = ScalarOp::WalkTest { at, array, variable: number, origin, exit: 0 };
+        let sites = self.units[unit].sites.len();
+        let kept = true;
+        let op = ScalarOp::WalkTest { at, array, variable: number, origin, exit: 0, kept };
         let test = self.emit(op)?;
         self.set_known(what, true, true);
         self.looped(at + 2, true, body, None, |this| {
             this.emit(ScalarOp::WalkNext { at, test: test as u16 }).map(drop)
         })?;
         self.restore(&before);
+        if self.units[unit].sites.len() == sites
+            && let ScalarOp::WalkTest { kept, .. } = &mut self.units[unit].code[test]
+        {
+            *kept = false;
+        }
         self.land(test)?;
         self.breaks_here()?;
         self.emit(ScalarOp::WalkEnd { array }).map(drop)
