@@ -88,7 +88,7 @@ def test_refusals(tmp_path: Path) -> None:
 
 def test_vts_and_points(tmp_path: Path) -> None:
     files = grids.write(tmp_path / "two.vts", [body(), body()], names=["hull", "fin"])
-    assert [f.name for f in files] == ["two.vtm", "two_hull.vts", "two_fin.vts"]
+    assert [f.name for f in files] == ["two.vtm", "two-1-hull.vts", "two-2-fin.vts"]
     (one,) = grids.write(tmp_path / "one.vts", [body()])
     assert b'WholeExtent="0 59 0 19 0 0"' in one.read_bytes()
     points = body()[:, 3]

@@ -50,11 +50,17 @@ pub(super) fn false_mitre<T: Real>(
                 let rest = rest.fold(Set::everything(), |s, code| s & Set::of_leaf(&half(*code)));
                 for p in points_of(&faces, &rest, over) {
                     let Some(tip) = tip(&faces, target, p, distance, over) else { continue };
-                    let others = covers.get_or_insert_with(|| {
-                        let other = parts.iter().enumerate().filter(|(other, _)| *other != k);
+                    // Every other term first, and then those without the same false edge.
+                    let cover = |covers: &dyn Fn(usize) -> bool| {
+                        let other = parts.iter().enumerate().filter(|(n, _)| *n != k && covers(*n));
                         Set::union_of(other.map(|(_, s)| s.clone()).collect()) | target.clone()
-                    });
-                    if others.value(tip) > 0.0 {
+                    };
+                    let others = covers.get_or_insert_with(|| cover(&|_| true));
+                    let alike = |n: usize| has_edge(body, &body.terms[n], &faces, p, over);
+                    if others.value(tip) > 0.0
+                        || (0..parts.len()).any(|n| n != k && alike(n))
+                            && cover(&|n| !alike(n)).value(tip) > 0.0
+                    {
                         return Ok(Some(p));
                     }
                 }
@@ -62,6 +68,32 @@ pub(super) fn false_mitre<T: Real>(
         }
     }
     Ok(None)
+}
+
+/// True if two faces of a term meet at a point with the normals of `faces`.
+fn has_edge<T: Real>(
+    body: &BodyTerms<T>,
+    term: &[u32],
+    faces: &[Primitive; 2],
+    p: Vec3,
+    over: &Box3,
+) -> bool {
+    let near = BESIDE * over.diagonal();
+    let normals = [0, 1].map(|k| faces[k].gradient(p).slope.normalized().unwrap_or_default());
+    let mut met = [false; 2];
+    for &code in term {
+        let g = body.literal(code).primitive.re().gradient(p);
+        let slope = g.slope.norm();
+        if g.value > near * slope {
+            return false;
+        }
+        if g.value.abs() <= near * slope {
+            for (met, normal) in met.iter_mut().zip(normals) {
+                *met |= (g.slope / slope - normal).norm() < TANGENT;
+            }
+        }
+    }
+    met == [true; 2]
 }
 
 /// Some points of the edge between two faces within the rest of their term.

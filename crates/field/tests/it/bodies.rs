@@ -578,8 +578,18 @@ fn a_mitre_inside_of_the_body_is_refused_where_it_would_stand_out() {
         Set::new(&Primitive::plane(normal, v(0.0, 0.0, -0.3)).unwrap())
     };
     let wedge = side(1.0) & side(-1.0) & cub([-2.0, -2.0, -2.0], [2.0, 2.0, 3.0]);
-    let both = plate.clone() | wedge;
-    assert!(both.offset(0.05).is_ok());
-    let refused = both.offset(0.5).err();
-    assert!(matches!(refused, Some(moldloft_field::FieldError::HiddenEdge { .. })), "{refused:?}");
+    let both = plate.clone() | wedge.clone();
+    // Two wedges that share the edge, one over a part of the other.
+    let pair = |shift: f64| {
+        let part = |y: f64| wedge.clone() & cub([-2.0, y - 1.0, -2.0], [2.0, y + 1.0, 3.0]);
+        plate.clone() | part(-shift) | part(shift)
+    };
+    for body in [both, pair(0.5), pair(0.0), pair(0.9)] {
+        assert!(body.offset(0.05).is_ok());
+        let refused = body.offset(0.5).err();
+        assert!(
+            matches!(refused, Some(moldloft_field::FieldError::HiddenEdge { .. })),
+            "{refused:?}"
+        );
+    }
 }
