@@ -106,7 +106,7 @@ class Bench:
     def hand(self, call: str) -> Any:
         return self.page.evaluate(f"() => window.moldloft.{call}")
 
-    def until(self, true: Callable[[], Any], seconds: float = 20) -> Any:
+    def until(self, true: Callable[[], Any], seconds: float = 60) -> Any:
         end = time.monotonic() + seconds
         while time.monotonic() < end:
             if found := true():

@@ -47,7 +47,14 @@ def test_ids_without_a_program_are_known() -> None:
 
 
 #: Long programs, in the long run alone.
-SLOW = {"file-too-large", "too-many-steps", "too-much-output", "volume-uncertain"}
+SLOW = {
+    "as-triangles",
+    "curved-body",
+    "file-too-large",
+    "too-many-steps",
+    "too-much-output",
+    "volume-uncertain",
+}
 
 
 def test_the_page_is_what_the_script_writes() -> None:

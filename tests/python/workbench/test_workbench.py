@@ -306,7 +306,7 @@ def test_a_model_without_bounds_takes_nothing_with_it(
         assert hub.main.text == bad and json.loads(hub.main.draft.path.read_text())["text"] == bad
         good = LINE + "AbsPoint P(1, 2, 3);\n"
         assert (await page.type(good))["ok"]
-        await page.until(lambda: any(o["name"] == "P" for o in page.objects), 60)
+        await page.until(lambda: any(o["name"] == "P" for o in page.objects), 240)
         assert hub.main.text == good
 
     workbench(model_file(LINE), play, memory=300 << 20, budget=3.0)

@@ -295,7 +295,7 @@ def test_random_acts(desk: Callable[..., DeskHand]) -> None:
     d = desk()
     first = d.table("line.csv", csv(rail()[:20]))
     seen: dict[str, Any] = {}
-    for _ in range(2000 if SOAK else 40):
+    for _ in range(2000 if SOAK else 20):
         act = rng.integers(10)
         if act < 2:
             d.key("Control+z")
