@@ -39,6 +39,14 @@ const TAPER: f64 = 2.5;
 const AXIS_TURN: f64 = 0.02;
 const MOST_TURN: f64 = 0.09;
 
+/// Parallel lines whose direction differs from that of the others along their axis by more than this
+/// multiple of the noise have at most this probability.
+const APART_FROM_AXIS: f64 = 2.5;
+const STANDS_OUT: f64 = 0.96;
+
+/// Deviation of the direction of an axis that is allowed for before the axes are fitted, in radians.
+const HAND_TURN: f64 = 0.035;
+
 /// Directions at which an inclined line is tried.
 const DIRECTIONS: usize = 720;
 
@@ -65,12 +73,34 @@ pub(super) struct Stroke {
 
 /// The axes as a hand drew them, the noise of its pen, and what each stroke shows by itself.
 pub(super) struct PenFit {
+    /// The axes as they are stated.
+    given: Vec<(CoordinateAxis, [f64; 2])>,
     pub axes: Vec<(CoordinateAxis, [f64; 2])>,
     /// Standard deviation of a coordinate of an end.
     sigma: f64,
     /// Fraction of lines along an axis.
     usual: f64,
     alone: Vec<Verdict>,
+}
+
+impl PenFit {
+    /// True if parallel strokes differ in direction from all others along their axis.
+    fn stands_out(
+        &self,
+        own: &[&Stroke],
+        strokes: &[Stroke],
+        axis: Option<CoordinateAxis>,
+    ) -> bool {
+        let Some((_, unit)) = self.given.iter().find(|a| Some(a.0) == axis) else { return false };
+        let others = (strokes.iter().zip(&self.alone))
+            .filter(|(s, v)| v.axis == axis && own.iter().all(|o| o.id != s.id))
+            .map(|(s, v)| (s, v.share));
+        let [sum, weight] = turn_of(*unit, others, self.sigma);
+        let weight = weight + 1.0 / AXIS_TURN.powi(2);
+        let [own_sum, own_weight] = turn_of(*unit, own.iter().map(|s| (*s, 1.0)), self.sigma);
+        let apart = sum / weight - own_sum / own_weight;
+        apart * apart > APART_FROM_AXIS.powi(2) * (1.0 / weight + 1.0 / own_weight)
+    }
 }
 
 impl Drawing {
@@ -101,8 +131,10 @@ impl Drawing {
         // from the prior.
         let mut usual = PRINCIPAL;
         let mut alone: Vec<Verdict> = Vec::new();
-        for _ in 0..3 {
-            alone = strokes.iter().map(|s| judge(&[s], &axes, sigma, usual)).collect();
+        // At first an axis may be drawn as far off as a hand has it, then it is where its lines are.
+        for turn in [HAND_TURN, HAND_TURN / 2.0, 0.0, 0.0] {
+            let noise = |s: &Stroke| Real::sqrt(sigma * sigma + (turn * s.length).powi(2) / 2.0);
+            alone = strokes.iter().map(|s| judge(&[s], &axes, noise(s), usual)).collect();
             let along = |v: &Verdict| if v.axis.is_some() { v.share } else { 1.0 - v.share };
             let sum = alone.iter().map(along).sum::<f64>() + USUAL_LINES * PRINCIPAL;
             usual = sum / (alone.len() as f64 + USUAL_LINES);
@@ -118,13 +150,15 @@ impl Drawing {
             }
             sigma = Real::sqrt(squares / weight).clamp(LEAST * size, MOST * size);
         }
-        PenFit { axes, sigma, usual, alone }
+        PenFit { given, axes, sigma, usual, alone }
     }
 
     /// The likeliest type of every line by its stroke and those that are parallel to it in space.
     pub(crate) fn verdicts(&self) -> BTreeMap<LineId, Verdict> {
         let strokes = self.strokes();
-        let PenFit { axes, sigma, usual, alone } = self.pen_fit(&strokes);
+        let fit = self.pen_fit(&strokes);
+        let PenFit { axes, sigma, usual, alone, .. } = &fit;
+        let (sigma, usual) = (*sigma, *usual);
         // The lines beside each point, with their verdicts.
         let mut at: BTreeMap<PointId, Vec<usize>> = BTreeMap::new();
         for (k, s) in strokes.iter().enumerate() {
@@ -174,7 +208,10 @@ impl Drawing {
             strokes.iter().enumerate().map(|(k, s)| (s.id, k)).collect();
         let mut out = BTreeMap::new();
         for (&group, own) in &members {
-            let mut verdict = Verdict { group, ..judge(own, &axes, sigma, usual) };
+            let mut verdict = Verdict { group, ..judge(own, axes, sigma, usual) };
+            if fit.stands_out(own, &strokes, verdict.axis) {
+                verdict.share = verdict.share.min(STANDS_OUT);
+            }
             if let [s] = own[..]
                 && verdict.axis.is_some()
             {
@@ -221,6 +258,21 @@ impl Drawing {
     }
 }
 
+/// The turn from a direction that strokes along one axis show, times its precision, and that precision.
+fn turn_of<'a>(
+    [x, y]: [f64; 2],
+    strokes: impl Iterator<Item = (&'a Stroke, f64)>,
+    sigma: f64,
+) -> [f64; 2] {
+    strokes.fold([0.0; 2], |[sum, weight], (s, share)| {
+        let sense = (s.d[0] * x + s.d[1] * y).signum();
+        let precision = share / (2.0 * sigma * sigma);
+        let turn = sense * (x * s.d[1] - y * s.d[0]) / s.length;
+        let own = precision * s.length * s.length;
+        [sum + own * turn, weight + own]
+    })
+}
+
 /// The directions in which a hand drew the axes: the likeliest by the lines along each, and by its
 /// stated direction.
 fn drawn_axes(
@@ -230,14 +282,9 @@ fn drawn_axes(
     sigma: f64,
 ) -> Vec<(CoordinateAxis, [f64; 2])> {
     let turned = |&(axis, [x, y]): &(CoordinateAxis, [f64; 2])| {
-        let (mut sum, mut weight) = (0.0, 1.0 / AXIS_TURN.powi(2));
-        for (s, v) in strokes.iter().zip(verdicts).filter(|(_, v)| v.axis == Some(axis)) {
-            let sense = (s.d[0] * x + s.d[1] * y).signum();
-            let precision = v.share / (2.0 * sigma * sigma);
-            sum += precision * s.length * sense * (x * s.d[1] - y * s.d[0]);
-            weight += precision * s.length * s.length;
-        }
-        let angle = (sum / weight).clamp(-MOST_TURN, MOST_TURN);
+        let along = strokes.iter().zip(verdicts).filter(|(_, v)| v.axis == Some(axis));
+        let [sum, weight] = turn_of([x, y], along.map(|(s, v)| (s, v.share)), sigma);
+        let angle = (sum / (weight + 1.0 / AXIS_TURN.powi(2))).clamp(-MOST_TURN, MOST_TURN);
         let (sin, cos) = (Real::sin(angle), Real::cos(angle));
         (axis, [x * cos - y * sin, x * sin + y * cos])
     };
