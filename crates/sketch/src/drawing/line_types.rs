@@ -34,6 +34,10 @@ const LEAVES: f64 = 1.0;
 const COPY_LEAN: f64 = 0.12;
 const COPY_SIZE: f64 = 0.7;
 
+/// So is a line whose ends differ from those of a copy by less than this multiple of the noise of an
+/// end: the difference of four ends has twice that noise.
+const COPY_NOISE: f64 = 7.0;
+
 /// Maximum number of groups for which pairs are tried too.
 const MOST_PAIRED: usize = 12;
 
@@ -121,7 +125,8 @@ impl Drawing {
         }
         self.mend(&verdicts);
         self.infer(&share);
-        for (id, axis) in self.across_by_copies() {
+        let sigma = self.pen_fit(&self.strokes()).sigma;
+        for (id, axis) in self.across_by_copies(sigma) {
             if let Some(line) = self.lines.get_mut(&id) {
                 line.free = Some(Free::across(axis));
                 line.source = LineTypeSource::Inferred;
@@ -170,7 +175,7 @@ impl Drawing {
     /// Types of untyped lines that have copies at the other ends of two lines along one axis: they
     /// are sides of a prism along it, perpendicular to it. Lines whose copies have different axes
     /// are left out.
-    fn across_by_copies(&self) -> BTreeMap<LineId, CoordinateAxis> {
+    fn across_by_copies(&self, sigma: f64) -> BTreeMap<LineId, CoordinateAxis> {
         if self.section.is_some() {
             return BTreeMap::new();
         }
@@ -190,7 +195,9 @@ impl Drawing {
         let copied = |a: [f64; 2], b: [f64; 2]| {
             let [m, n] = [a, b].map(|w| Real::sqrt(w[0] * w[0] + w[1] * w[1]));
             let (cross, dot) = (a[0] * b[1] - a[1] * b[0], a[0] * b[0] + a[1] * b[1]);
-            dot > 0.0 && cross.abs() < COPY_LEAN * m * n && m.min(n) > COPY_SIZE * m.max(n)
+            let apart = (a[0] - b[0]).powi(2) + (a[1] - b[1]).powi(2);
+            let alike = cross.abs() < COPY_LEAN * m * n && m.min(n) > COPY_SIZE * m.max(n);
+            dot > 0.0 && (alike || apart < (COPY_NOISE * sigma).powi(2))
         };
         let ends = |p: &PointId| along.get(p).map_or(&[][..], Vec::as_slice);
         let mut found = BTreeMap::new();

@@ -77,7 +77,7 @@ pub(super) struct PenFit {
     given: Vec<(CoordinateAxis, [f64; 2])>,
     pub axes: Vec<(CoordinateAxis, [f64; 2])>,
     /// Standard deviation of a coordinate of an end.
-    sigma: f64,
+    pub sigma: f64,
     /// Fraction of lines along an axis.
     usual: f64,
     alone: Vec<Verdict>,
