@@ -44,8 +44,13 @@ const MOST_TURN: f64 = 0.09;
 const APART_FROM_AXIS: f64 = 2.5;
 const STANDS_OUT: f64 = 0.96;
 
-/// Deviation of the direction of an axis that is allowed for before the axes are fitted, in radians.
-const HAND_TURN: f64 = 0.035;
+/// Number of directions about a stated axis among which the one with most lines is found, to either
+/// side, and of rounds of that with a new estimate of the noise.
+const AXIS_STEPS: i32 = 30;
+const AXIS_ROUNDS: usize = 3;
+
+/// Deviation of such a direction from that of the lines, in radians.
+const GRID_TURN: f64 = 0.01;
 
 /// Directions at which an inclined line is tried.
 const DIRECTIONS: usize = 720;
@@ -131,8 +136,11 @@ impl Drawing {
         // from the prior.
         let mut usual = PRINCIPAL;
         let mut alone: Vec<Verdict> = Vec::new();
-        // At first an axis may be drawn as far off as a hand has it, then it is where its lines are.
-        for turn in [HAND_TURN, HAND_TURN / 2.0, 0.0, 0.0] {
+        for _ in 0..AXIS_ROUNDS {
+            axes = given.iter().map(|a| (a.0, densest(a.1, strokes, sigma))).collect();
+            sigma = self.pen_noise(strokes, &axes);
+        }
+        for turn in [GRID_TURN, 0.0, 0.0] {
             let noise = |s: &Stroke| Real::sqrt(sigma * sigma + (turn * s.length).powi(2) / 2.0);
             alone = strokes.iter().map(|s| judge(&[s], &axes, noise(s), usual)).collect();
             let along = |v: &Verdict| if v.axis.is_some() { v.share } else { 1.0 - v.share };
@@ -256,6 +264,28 @@ impl Drawing {
         let mean = (n * found * found + STEADY_LINES * usual * usual) / (n + STEADY_LINES);
         Real::sqrt(mean).clamp(LEAST * size, MOST * size)
     }
+}
+
+/// The direction about a stated axis along which most strokes are, each as much as its length and the
+/// noise allow.
+fn densest([x, y]: [f64; 2], strokes: &[Stroke], sigma: f64) -> [f64; 2] {
+    let turned = |step: i32| {
+        let angle = f64::from(step) * MOST_TURN / f64::from(AXIS_STEPS);
+        let (sin, cos) = (Real::sin(angle), Real::cos(angle));
+        (angle, [x * cos - y * sin, x * sin + y * cos])
+    };
+    let score = |(angle, [a, b]): (f64, [f64; 2])| {
+        let each = |s: &Stroke| {
+            let miss = s.d[0] * b - s.d[1] * a;
+            let width = (sigma / s.length).min(1.0);
+            let along = PRINCIPAL / 3.0 * Real::exp(-miss * miss / (4.0 * sigma * sigma));
+            Real::ln(along + (1.0 - PRINCIPAL / 3.0) * width)
+        };
+        strokes.iter().map(each).sum::<f64>() - (angle / AXIS_TURN).powi(2) / 2.0
+    };
+    let steps = (-AXIS_STEPS..=AXIS_STEPS).map(turned);
+    let best = steps.map(|at| (score(at), at.1)).max_by(|a, b| a.0.total_cmp(&b.0));
+    best.map_or([x, y], |b| b.1)
 }
 
 /// The turn from a direction that strokes along one axis show, times its precision, and that precision.
