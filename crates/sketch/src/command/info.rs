@@ -17,6 +17,9 @@ use crate::{
 use moldloft_diag::Severity;
 use moldloft_syntax::number::plain;
 
+/// Largest gap of planes that may be one, in standard deviations of a drawn coordinate.
+const NEAR_PLANES: f64 = 4.0;
+
 impl SketchSession {
     /// The first fault of types that stops a conversion: 300, 400, 401, 402.
     pub(super) fn first_type_fault(
@@ -228,6 +231,7 @@ impl SketchSession {
             reply.about = ReplySubject::of("likely-one-plane").points([p, q]).axis(axis);
             self.out.push(reply);
         }
+        self.out.extend(near_planes(&object, &view, &layout));
         for (text, about) in self.loose_lines(&object, &view, &layout) {
             self.out.push(CommandReply { about, ..CommandReply::warning(text) });
         }
@@ -782,6 +786,46 @@ impl SketchSession {
         self.state.picture.view = name;
         Ok(())
     }
+}
+
+/// Pairs of planes that are drawn nearly as one, with nothing that relates them.
+fn near_planes(
+    object: &SketchObject,
+    view: &DrawingCache,
+    layout: &DimensionLayout<f64>,
+) -> Vec<CommandReply> {
+    let Some(estimate) = view.estimate().filter(|_| !object.drawing.exact) else {
+        return Vec::new();
+    };
+    let near = NEAR_PLANES * object.drawing.noise_of_hand();
+    let aligns = likely_aligns(object, view, layout);
+    let mut found = Vec::new();
+    for axis in CoordinateAxis::ALL {
+        let known = |plane: usize| layout.coordinates[axis.index()][plane].is_some();
+        let of = |p| view.planes.plane(axis, p);
+        let mut order: Vec<usize> = (0..view.planes.counts()[axis.index()]).collect();
+        order.sort_by(|&a, &b| estimate.plane(axis, a).total_cmp(&estimate.plane(axis, b)));
+        for pair in order.windows(2) {
+            let gap = estimate.plane(axis, pair[1]) - estimate.plane(axis, pair[0]);
+            let ends = [0, 1].map(|k| view.planes.members(axis, pair[k]).first().copied());
+            let [Some(p), Some(q)] = ends else { continue };
+            let proposed = aligns.iter().any(|a| {
+                let planes = [of(a.p), of(a.q)];
+                a.axis == axis && pair.iter().all(|k| planes.contains(&Some(*k)))
+            });
+            if gap > near || proposed || pair.iter().all(|k| known(*k)) {
+                continue;
+            }
+            let mut reply = CommandReply::warning(format!(
+                "{axis}: points {p} and {q} are drawn nearly in one plane; with DIMENSION {axis} \
+                 {p} {q} = value they are in two"
+            ));
+            reply.next = Some(format!("ALIGN {axis} {p} {q}"));
+            reply.about = ReplySubject::of("nearly-one-plane").points([p, q]).axis(axis);
+            found.push(reply);
+        }
+    }
+    found
 }
 
 /// Planes of parts of open depth that coincide with planes of the rest, as far as the picture tells,

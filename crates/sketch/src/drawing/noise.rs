@@ -161,6 +161,12 @@ impl Drawing {
         PenFit { given, axes, sigma, usual, alone }
     }
 
+    /// Standard deviation of a drawn coordinate of an end, in units of the page.
+    pub(crate) fn noise_of_hand(&self) -> f64 {
+        let strokes = self.strokes();
+        if strokes.is_empty() { 0.0 } else { self.pen_fit(&strokes).sigma }
+    }
+
     /// The likeliest type of every line by its stroke and those that are parallel to it in space.
     pub(crate) fn verdicts(&self) -> BTreeMap<LineId, Verdict> {
         let strokes = self.strokes();
