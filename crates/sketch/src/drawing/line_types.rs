@@ -36,7 +36,7 @@ const COPY_SIZE: f64 = 0.7;
 
 /// So is a line whose ends differ from those of a copy by less than this multiple of the noise of an
 /// end: the difference of four ends has twice that noise.
-const COPY_NOISE: f64 = 7.0;
+const COPY_NOISE: f64 = 5.0;
 
 /// Maximum number of groups for which pairs are tried too.
 const MOST_PAIRED: usize = 12;

@@ -36,21 +36,16 @@ const TAPER: f64 = 2.5;
 
 /// Standard deviation of the direction in which a hand draws an axis, in radians, and the most by
 /// which it is taken to be off.
-const AXIS_TURN: f64 = 0.02;
+const AXIS_TURN: f64 = 0.03;
 const MOST_TURN: f64 = 0.09;
 
 /// Parallel lines whose direction differs from that of the others along their axis by more than this
 /// multiple of the noise have at most this probability.
-const APART_FROM_AXIS: f64 = 2.5;
+const APART_FROM_AXIS: f64 = 3.0;
 const STANDS_OUT: f64 = 0.96;
 
-/// Number of directions about a stated axis among which the one with most lines is found, to either
-/// side, and of rounds of that with a new estimate of the noise.
-const AXIS_STEPS: i32 = 30;
-const AXIS_ROUNDS: usize = 3;
-
-/// Deviation of such a direction from that of the lines, in radians.
-const GRID_TURN: f64 = 0.01;
+/// Odds that an axis is drawn otherwise than stated.
+const TURNED_ODDS: f64 = 0.03;
 
 /// Directions at which an inclined line is tried.
 const DIRECTIONS: usize = 720;
@@ -136,13 +131,8 @@ impl Drawing {
         // from the prior.
         let mut usual = PRINCIPAL;
         let mut alone: Vec<Verdict> = Vec::new();
-        for _ in 0..AXIS_ROUNDS {
-            axes = given.iter().map(|a| (a.0, densest(a.1, strokes, sigma))).collect();
-            sigma = self.pen_noise(strokes, &axes);
-        }
-        for turn in [GRID_TURN, 0.0, 0.0] {
-            let noise = |s: &Stroke| Real::sqrt(sigma * sigma + (turn * s.length).powi(2) / 2.0);
-            alone = strokes.iter().map(|s| judge(&[s], &axes, noise(s), usual)).collect();
+        for _ in 0..3 {
+            alone = strokes.iter().map(|s| judge(&[s], &axes, sigma, usual)).collect();
             let along = |v: &Verdict| if v.axis.is_some() { v.share } else { 1.0 - v.share };
             let sum = alone.iter().map(along).sum::<f64>() + USUAL_LINES * PRINCIPAL;
             usual = sum / (alone.len() as f64 + USUAL_LINES);
@@ -272,28 +262,6 @@ impl Drawing {
     }
 }
 
-/// The direction about a stated axis along which most strokes are, each as much as its length and the
-/// noise allow.
-fn densest([x, y]: [f64; 2], strokes: &[Stroke], sigma: f64) -> [f64; 2] {
-    let turned = |step: i32| {
-        let angle = f64::from(step) * MOST_TURN / f64::from(AXIS_STEPS);
-        let (sin, cos) = (Real::sin(angle), Real::cos(angle));
-        (angle, [x * cos - y * sin, x * sin + y * cos])
-    };
-    let score = |(angle, [a, b]): (f64, [f64; 2])| {
-        let each = |s: &Stroke| {
-            let miss = s.d[0] * b - s.d[1] * a;
-            let width = (sigma / s.length).min(1.0);
-            let along = PRINCIPAL / 3.0 * Real::exp(-miss * miss / (4.0 * sigma * sigma));
-            Real::ln(along + (1.0 - PRINCIPAL / 3.0) * width)
-        };
-        strokes.iter().map(each).sum::<f64>() - (angle / AXIS_TURN).powi(2) / 2.0
-    };
-    let steps = (-AXIS_STEPS..=AXIS_STEPS).map(turned);
-    let best = steps.map(|at| (score(at), at.1)).max_by(|a, b| a.0.total_cmp(&b.0));
-    best.map_or([x, y], |b| b.1)
-}
-
 /// The turn from a direction that strokes along one axis show, times its precision, and that precision.
 fn turn_of<'a>(
     [x, y]: [f64; 2],
@@ -320,7 +288,15 @@ fn drawn_axes(
     let turned = |&(axis, [x, y]): &(CoordinateAxis, [f64; 2])| {
         let along = strokes.iter().zip(verdicts).filter(|(_, v)| v.axis == Some(axis));
         let [sum, weight] = turn_of([x, y], along.map(|(s, v)| (s, v.share)), sigma);
-        let angle = (sum / (weight + 1.0 / AXIS_TURN.powi(2))).clamp(-MOST_TURN, MOST_TURN);
+        // Either the axis is drawn as stated, or turned: the mean of both.
+        let (own, turned) = (1.0 / weight.max(1e-12), AXIS_TURN.powi(2));
+        let seen = (sum * own).powi(2) / 2.0;
+        let odds = TURNED_ODDS
+            * Real::sqrt(own / (own + turned))
+            * Real::exp(seen / own - seen / (own + turned));
+        let share = if odds.is_finite() { odds / (1.0 + odds) } else { 1.0 };
+        let angle = share * sum / (weight + 1.0 / turned);
+        let angle = angle.clamp(-MOST_TURN, MOST_TURN);
         let (sin, cos) = (Real::sin(angle), Real::cos(angle));
         (axis, [x * cos - y * sin, x * sin + y * cos])
     };
