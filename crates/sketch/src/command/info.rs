@@ -20,6 +20,9 @@ use moldloft_syntax::number::plain;
 /// Largest gap of planes that may be one, in standard deviations of a drawn coordinate.
 const NEAR_PLANES: f64 = 4.0;
 
+/// Maximum number of such pairs that are named, the closest first.
+const MOST_PROPOSALS: usize = 20;
+
 impl SketchSession {
     /// The first fault of types that stops a conversion: 300, 400, 401, 402.
     pub(super) fn first_type_fault(
@@ -822,10 +825,18 @@ fn near_planes(
             ));
             reply.next = Some(format!("ALIGN {axis} {p} {q}"));
             reply.about = ReplySubject::of("nearly-one-plane").points([p, q]).axis(axis);
-            found.push(reply);
+            found.push((gap, reply));
         }
     }
-    found
+    found.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let left = found.len().saturating_sub(MOST_PROPOSALS);
+    found.truncate(MOST_PROPOSALS);
+    let more = (left > 0).then(|| {
+        let text = format!("{left} more pairs of planes are drawn nearly as one");
+        let about = ReplySubject::of("nearly-one-plane");
+        CommandReply { about, ..CommandReply::warning(text) }
+    });
+    found.into_iter().map(|(_, reply)| reply).chain(more).collect()
 }
 
 /// Planes of parts of open depth that coincide with planes of the rest, as far as the picture tells,

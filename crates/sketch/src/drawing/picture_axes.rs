@@ -30,6 +30,9 @@ const FITTED_AXIS: f64 = 4.0;
 /// Loss of likelihood by a contradiction between types.
 const CONTRADICTION: f64 = 9.0;
 
+/// Number of contradictions that may make the likeliest choice by the lines alone a worse one.
+const MOST_CONTRADICTIONS: f64 = 4.0;
+
 /// Number of choices for which all lines are typed, and of fits of their axes.
 const MOST_TYPED: usize = 8;
 const AXIS_FITS: usize = 4;
@@ -100,6 +103,8 @@ impl Drawing {
         let sigma = self.pen_noise_of(&strokes, &peaks(&strokes));
         let mut choices = self.choices(&strokes, sigma);
         choices.sort_by(|a, b| b.0.total_cmp(&a.0));
+        let best = choices.first()?.0;
+        choices.retain(|c| c.0 >= best - MOST_CONTRADICTIONS * CONTRADICTION);
         choices.truncate(MOST_TYPED);
         let typed = choices.into_iter().map(|(_, angles, drawn)| {
             let mut fitted = self.clone();
