@@ -138,10 +138,10 @@ export class BoardBar {
     const { board } = this
     const { drawn, checks } = board
     const fault = drawn.faults[0]
-    const fix = (command: string) => {
+    const fix = (command: string, show: () => void) => {
       const typed = /^TYPE (\d+) AS (\w+)$/.exec(command)
       const change = typed ? { do: 'type', lines: [Number(typed[1])], type: typed[2] } : { do: 'run', command }
-      return h('button', { onclick: () => void board.act([change]) }, command)
+      return h('button', { onclick: () => void board.act([change]), onpointerenter: show, onfocus: show }, command)
     }
     // A doubt is ended by what is proposed, or by what is there.
     const sure = (c: Check) => {
@@ -156,13 +156,12 @@ export class BoardBar {
         'div',
         {
           class: 'issue',
-          onpointerenter: () => board.choosePart(c),
           tabindex: 0,
           onfocus: () => board.choosePart(c),
         },
         c.text,
         ' ',
-        ...[...new Set([...c.fixes, ...sure(c)])].map(fix),
+        ...[...new Set([...c.fixes, ...sure(c)])].map((command) => fix(command, () => board.choosePart(c))),
       )
     this.issues.replaceChildren(
       ...(fault ? [h('div', { class: 'bad' }, `line ${fault.line}: ${fault.text}`)] : []),
