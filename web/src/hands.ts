@@ -612,15 +612,21 @@ export class Hands {
     } catch (error) {
       return this.act.status((error as Error).message)
     }
-    this.requests.push(() =>
-      this.link.ask('set', { values: { [name]: x } }).catch((error) => this.act.status(error.message)),
-    )
     if (this.drag) this.drag.moved = this.drag.aimed = true
+    // The number comes after what the pointer and an axis have asked for, and replaces neither.
+    const set = async () => {
+      await this.requests.settled()
+      this.requests.push(() =>
+        this.link.ask('set', { values: { [name]: x } }).catch((error) => this.act.status(error.message)),
+      )
+    }
     if (e.key === 'Tab') {
       const all = (names ?? '').split('\n')
       this.entry.dataset.name = this.entry.placeholder = all[(all.indexOf(name) + 1) % all.length]
       this.entry.value = ''
+      void set()
     } else {
+      await set()
       void this.finish(true)
       this.view.canvas.focus()
     }

@@ -100,7 +100,8 @@ def test_drags_forms_fixes_and_reverts_are_steps(bench: Callable[..., Bench]) ->
     program = b.page.get_by_role("textbox", name="program")
     program.focus()
     b.page.keyboard.press("Control+End")
-    b.page.keyboard.type("AbsPoint R(0, 0, 0);")
+    # At once: a pause between keys would begin another step.
+    b.page.keyboard.insert_text("AbsPoint R(0, 0, 0);")
     came_to(b, texts[-1] + "AbsPoint R(0, 0, 0);")
     texts.append(b.text())
     b.page.keyboard.press("Control+k")
