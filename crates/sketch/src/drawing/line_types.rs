@@ -21,7 +21,7 @@ pub const DOUBTFUL: f64 = 0.97;
 const MENDED: f64 = 0.85;
 
 /// Penalty for a line of zero length, or a face loop that cannot be plane, in logarithms of odds.
-const FAULT: f64 = 9.0;
+pub(super) const FAULT: f64 = 9.0;
 
 /// Gain of odds for each further line of a group.
 const FELLOW: f64 = 1.7;
@@ -125,8 +125,7 @@ impl Drawing {
         }
         self.mend(&verdicts);
         self.infer(&share);
-        let sigma = self.pen_fit(&self.strokes()).sigma;
-        for (id, axis) in self.across_by_copies(sigma) {
+        for (id, axis) in self.across_by_copies(self.noise_of_hand()) {
             if let Some(line) = self.lines.get_mut(&id) {
                 line.free = Some(Free::across(axis));
                 line.source = LineTypeSource::Inferred;
@@ -148,8 +147,12 @@ impl Drawing {
     /// Types all lines, and counts the contradictions that remain.
     pub(super) fn typed_contradictions(&mut self) -> usize {
         self.type_all();
-        let loops = if self.section.is_none() { face_loops(&self.lines) } else { vec![] };
-        self.collapsed(&loops)
+        self.collapsed(&self.plane_loops())
+    }
+
+    /// Loops of lines that bound plane faces; none in a cross section.
+    fn plane_loops(&self) -> Vec<Vec<LineId>> {
+        if self.section.is_none() { face_loops(&self.lines) } else { vec![] }
     }
 
     /// Types lines by the planes that their ends share, as long as that types any.
@@ -245,7 +248,7 @@ impl Drawing {
         left.extend(single);
         left.sort_by(|a, b| a.0.total_cmp(&b.0));
         left.truncate(MOST_TRIED);
-        let loops = if self.section.is_none() { face_loops(&self.lines) } else { vec![] };
+        let loops = self.plane_loops();
         let inclined = self.section.map(Free::across);
         let mut score = self.collapsed(&loops);
         while score > 0 {

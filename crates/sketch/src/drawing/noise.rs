@@ -4,7 +4,7 @@
 //! whatever its length, so short lines tell little and long ones much. Lines that are parallel in space,
 //! because two lines of one axis join their ends, are judged together: m of them tell √m times as much.
 
-use crate::{CoordinateAxis, Drawing, LineId, PointId};
+use crate::{CoordinateAxis, DOUBTFUL, Drawing, LineId, PointId};
 use moldloft_num::Real;
 use moldloft_num::union_find::UnionFind;
 use std::collections::{BTreeMap, BTreeSet};
@@ -42,7 +42,7 @@ const MOST_TURN: f64 = 0.09;
 /// Parallel lines whose direction differs from that of the others along their axis by more than this
 /// multiple of the noise have at most this probability.
 const APART_FROM_AXIS: f64 = 3.0;
-const STANDS_OUT: f64 = 0.96;
+const STANDS_OUT: f64 = DOUBTFUL - 0.01;
 
 /// Odds that an axis is drawn otherwise than stated.
 const TURNED_ODDS: f64 = 0.03;

@@ -4,6 +4,7 @@
 //! all choices of three the likeliest is taken: by the lines along them, by where axes usually are on a
 //! page, and by the contradictions between planes that remain once all lines are typed.
 
+use crate::drawing::line_types::FAULT;
 use crate::drawing::noise::{PRINCIPAL, Stroke};
 use crate::{CoordinateAxis, Drawing, Free, Projection};
 use moldloft_num::Real;
@@ -26,9 +27,6 @@ const GROUND_ANGLE: f64 = 35.0;
 
 /// Loss of likelihood, as a logarithm, by an axis that is fitted to lines rather than vertical.
 const FITTED_AXIS: f64 = 4.0;
-
-/// Loss of likelihood by a contradiction between types.
-const CONTRADICTION: f64 = 9.0;
 
 /// Number of contradictions that may make the likeliest choice by the lines alone a worse one.
 const MOST_CONTRADICTIONS: f64 = 4.0;
@@ -104,12 +102,12 @@ impl Drawing {
         let mut choices = self.choices(&strokes, sigma);
         choices.sort_by(|a, b| b.0.total_cmp(&a.0));
         let best = choices.first()?.0;
-        choices.retain(|c| c.0 >= best - MOST_CONTRADICTIONS * CONTRADICTION);
+        choices.retain(|c| c.0 >= best - MOST_CONTRADICTIONS * FAULT);
         choices.truncate(MOST_TYPED);
         let typed = choices.into_iter().map(|(_, angles, drawn)| {
             let mut fitted = self.clone();
             fitted.projection = Projection { angle_deg: angles, scale: [1.0; 3] };
-            fitted.fit_axes(&strokes, AXIS_FITS);
+            fitted.fit_axes(&strokes);
             let angles = fitted.projection.angle_deg;
             let contradictions = fitted.typed_contradictions();
             let lines = strokes.iter().map(|s| {
@@ -118,7 +116,7 @@ impl Drawing {
                 line_fit(s, sigma, angle)[usize::from(axis.is_none())]
             });
             let score = usual(angles, drawn) + lines.sum::<f64>();
-            (score - CONTRADICTION * contradictions as f64, fitted.projection)
+            (score - FAULT * contradictions as f64, fitted.projection)
         });
         typed.max_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, projection)| projection)
     }
@@ -150,8 +148,8 @@ impl Drawing {
     }
 
     /// Moves the axes to where the lines along them are drawn.
-    fn fit_axes(&mut self, strokes: &[Stroke], times: usize) {
-        for _ in 0..times {
+    fn fit_axes(&mut self, strokes: &[Stroke]) {
+        for _ in 0..AXIS_FITS {
             for (axis, [x, y]) in self.pen_fit(strokes).axes {
                 let angle = &mut self.projection.angle_deg[axis.index()];
                 let to = Real::atan2(y, x).to_degrees();
