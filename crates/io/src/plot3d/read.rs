@@ -205,6 +205,18 @@ pub(super) fn sizes(words: &[i64], axes: usize) -> Option<Vec<[usize; 3]>> {
     Some(all)
 }
 
+/// Numbers in front of a block of a solution file: Mach number, angle of attack, Reynolds number, time.
+const FLOW_CONDITIONS: u128 = 4;
+
+/// The number of numbers that a solution (q) file has after its sizes: the flow conditions and, for
+/// each point, density, momentum and energy.
+pub(super) fn solution_numbers(points: u128, blocks: usize, axes: usize) -> u128 {
+    points * (axes as u128 + 2) + FLOW_CONDITIONS * blocks as u128
+}
+
+/// A file that is a solution instead.
+pub(super) const SOLUTION: &str = "flow conditions and the values of a flow: this is a solution (q) file, its grid is another file";
+
 fn of_records(
     bytes: &[u8],
     records: &[FortranRecord],
@@ -292,12 +304,13 @@ fn of_records(
             )
         };
         let Some(here) = here else {
-            complaints.push(complaint(
-                0,
-                record.start(),
-                expected(),
-                format!("{} bytes", record.len()),
-            ));
+            let next = rest.clone().next().map_or(0, FortranRecord::len);
+            let solution = [4, 8].into_iter().any(|width| {
+                (record.len(), next)
+                    == (FLOW_CONDITIONS as usize * width, count * (axes + 2) * width)
+            });
+            let found = if solution { SOLUTION.into() } else { format!("{} bytes", record.len()) };
+            complaints.push(complaint(0, record.start(), expected(), found));
             return None;
         };
         let (step, layers) = if here.planes { (plane, size[2]) } else { (count, 1) };
@@ -419,15 +432,17 @@ fn of_stream(
     if !fits && points > 1 && (1.0..100.0).contains(&per_point) {
         let width = axes as u128 * if per_point < 5.0 * axes as f64 { 4 } else { 8 };
         let kind = if multi { "multi-block" } else { "single-block" };
+        let numbers = solution_numbers(points, blocks, axes);
+        let solution = [4 * numbers, 8 * numbers].contains(&(left as u128));
         complaints.push(complaint(
-            2,
+            if solution { 0 } else { 2 },
             start + header,
             format!(
                 "{} bytes of coordinates for {points} points ({kind}, {axes}-D, {} precision)",
                 points * width,
                 if width / axes as u128 == 8 { "double" } else { "single" }
             ),
-            format!("{left} bytes"),
+            if solution { SOLUTION.into() } else { format!("{left} bytes") },
         ));
     }
 }

@@ -1,6 +1,6 @@
 //! Plot3D in, as text: numbers with Fortran's repeat counts and exponents.
 
-use super::read::{fill, sizes};
+use super::read::{SOLUTION, fill, sizes, solution_numbers};
 use super::variant::{FORMAT, Laid, Variant};
 use crate::{FilePosition, ReadError, StructuredGrid};
 
@@ -61,11 +61,12 @@ struct Misfit {
     wanted: u128,
     multi: bool,
     axes: usize,
+    solution: bool,
 }
 
 impl Misfit {
-    fn rank(&self) -> (bool, u128) {
-        (!self.ends_line, self.wanted.abs_diff(self.left as u128))
+    fn rank(&self) -> (bool, bool, u128) {
+        (!self.solution, !self.ends_line, self.wanted.abs_diff(self.left as u128))
     }
 }
 
@@ -111,7 +112,9 @@ pub(super) fn read_text(bytes: &[u8]) -> Result<(Vec<StructuredGrid>, Variant), 
                 let wanted = points * each as u128;
                 if wanted != left as u128 {
                     let ends_line = line(start + header - 1) != line(start + header);
-                    let misfit = Misfit { ends_line, left, wanted, multi, axes };
+                    let solution =
+                        solution_numbers(points, sizes.len(), axes) == left as u128 && ends_line;
+                    let misfit = Misfit { ends_line, left, wanted, multi, axes, solution };
                     if nearest.as_ref().is_none_or(|other| misfit.rank() < other.rank()) {
                         nearest = Some(misfit);
                     }
@@ -154,12 +157,13 @@ pub(super) fn read_text(bytes: &[u8]) -> Result<(Vec<StructuredGrid>, Variant), 
         found,
     };
     Err(match nearest {
-        Some(Misfit { left, wanted, multi, axes, .. }) => error(
+        Some(Misfit { left, wanted, multi, axes, solution, .. }) => error(
             format!(
                 "{wanted} coordinates after the sizes ({}, {axes}-D)",
                 if multi { "multi-block" } else { "single-block" }
             ),
             match (left as u128).checked_sub(wanted) {
+                _ if solution => SOLUTION.into(),
                 Some(more) => format!("{left} numbers, {more} too many"),
                 None => format!("{left} numbers"),
             },

@@ -220,3 +220,66 @@ fn layers_too_thin_for_single_precision_are_refused_by_place() {
     write(&[grid(1e-5)], single).unwrap();
     write(&[grid(1e-8)], Variant { double: true, ..single }).unwrap();
 }
+
+/// A solution file as a flow solver writes it, in one of the three layouts.
+fn solution_file(
+    sizes: &[[usize; 3]],
+    axes: usize,
+    laid: Laid,
+    multi: bool,
+    double: bool,
+) -> Vec<u8> {
+    let number = |x: f64| match double {
+        true => x.to_le_bytes().to_vec(),
+        false => (x as f32).to_le_bytes().to_vec(),
+    };
+    let header = sizes.iter().flat_map(|s| s[..axes].iter().map(|n| *n as i32));
+    let conditions = [0.84, 3.06, 1.1e7, 0.0];
+    let values = |size: &[usize; 3]| {
+        let count: usize = size.iter().product::<usize>() * (axes + 2);
+        (0..count).map(|k| 0.5 + 0.01 * k as f64).collect::<Vec<_>>()
+    };
+    if laid == Laid::Formatted {
+        let mut text = if multi { format!("{}\n", sizes.len()) } else { String::new() };
+        text += &header.map(|n| n.to_string()).collect::<Vec<_>>().join(" ");
+        for size in sizes {
+            for row in [conditions.to_vec(), values(size)] {
+                text += "\n";
+                text += &row.iter().map(|x| format!("{x:e}")).collect::<Vec<_>>().join(" ");
+            }
+        }
+        return text.into_bytes();
+    }
+    let mut records = Vec::new();
+    if multi {
+        records.push((sizes.len() as i32).to_le_bytes().to_vec());
+    }
+    records.push(header.flat_map(i32::to_le_bytes).collect());
+    for size in sizes {
+        records.push(conditions.iter().flat_map(|x| number(*x)).collect());
+        records.push(values(size).iter().flat_map(|x| number(*x)).collect());
+    }
+    let marked = |record: Vec<u8>| {
+        let mark = (record.len() as u32).to_le_bytes().to_vec();
+        if laid == Laid::Stream { record } else { [&mark[..], &record, &mark].concat() }
+    };
+    records.into_iter().flat_map(marked).collect()
+}
+
+#[test]
+fn solution_files_are_named() {
+    let two = [[5, 4, 3], [7, 3, 3]];
+    for laid in [Laid::Unformatted, Laid::Stream, Laid::Formatted] {
+        for (sizes, multi) in [(&two[..1], false), (&two[..1], true), (&two[..], true)] {
+            for axes in [2, 3] {
+                let flat: Vec<_> =
+                    sizes.iter().map(|s| [s[0], s[1], if axes == 3 { s[2] } else { 1 }]).collect();
+                for double in [false, true] {
+                    let error = read(&solution_file(&flat, axes, laid, multi, double)).unwrap_err();
+                    let text = error.to_string();
+                    assert!(text.contains("solution (q) file"), "{laid:?} {axes} {multi}: {text}");
+                }
+            }
+        }
+    }
+}
