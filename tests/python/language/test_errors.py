@@ -201,3 +201,22 @@ def test_errors_that_are_no_fault_of_arguments_stay() -> None:
         module["public"](1.0)
     with pytest.raises(arguments.ArgumentError, match=r"`number` of .*: expected a number, found"):
         module["public"]([])
+
+
+@pytest.mark.parametrize(
+    ("text", "hint"),
+    [
+        ("for (i = 1:3) x = i; end", "in braces"),
+        ("farray a = {1, 2}; print a[end];", "a.d1"),
+        ("if (1) then x = 2;", "in braces"),
+        ("if (0) x = 1; elif (1) x = 2;", "else if"),
+        ("x = 2 ** 3;", "a^b"),
+        ("x++;", "i += 1"),
+        ("x = 3; // three", "#"),
+        ("def f(x): return x", "function float"),
+    ],
+)
+def test_habits_of_other_languages_have_their_equivalent(text: str, hint: str) -> None:
+    with pytest.raises(ModelError) as raised:
+        moldloft.loads(f"float x;\n{text}\n")
+    assert hint in str(raised.value)
