@@ -208,7 +208,7 @@ def test_errors_that_are_no_fault_of_arguments_stay() -> None:
     [
         ("for (i = 1:3) x = i; end", "in braces"),
         ("farray a = {1, 2}; print a[end];", "a.d1"),
-        ("if (1) then x = 2;", "in braces"),
+        ("begin x = 2; end", "in braces"),
         ("if (0) x = 1; elif (1) x = 2;", "else if"),
         ("x = 2 ** 3;", "a^b"),
         ("x++;", "i += 1"),

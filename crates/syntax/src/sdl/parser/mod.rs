@@ -471,7 +471,7 @@ pub fn foreign_word(word: &str) -> Option<&'static str> {
             "a function is declared with its types: `function float f(float x) { return x; }`"
         }
         "elif" | "elseif" | "elsif" => "a further condition is `else if (condition)`",
-        "end" | "endif" | "endfor" | "endwhile" | "endfunction" | "begin" | "then" | "do" => {
+        "end" | "endif" | "endfor" | "endwhile" | "endfunction" | "begin" | "do" => {
             "statements that belong together are in braces, `for (i = 1:n) { ... }`; the last element is `a[a.d1]`"
         }
         "var" | "let" | "const" | "auto" | "double" | "real" | "bool" | "boolean" => {
