@@ -189,8 +189,9 @@ class Model(Differentiable, Floating, Writable, Adapted):
 
         ``False`` by default: the mesh, hydrostatics, derivatives of whole figures and files
         raise :class:`~moldloft.errors.ModelError` while an object has failed or panels contradict
-        each other in their counts; hydrostatics also while the skin is open below the water. With
-        ``True`` they are those of the valid objects, which the remarks of hydrostatics state.
+        each other in their counts; hydrostatics also while the skin is open below the water, bodies
+        overlap or a plate is inside a body. With ``True`` they are those of the valid objects,
+        which the remarks of hydrostatics state.
 
         Examples
         --------
@@ -633,7 +634,9 @@ class Model(Differentiable, Floating, Writable, Adapted):
         """Plates of the skin inside a body, and overlapping bodies.
 
         Each is a warning: a plate inside counts as skin, and the common part of two bodies counts
-        twice. The test is the winding number of the other body at centres and corners of panels.
+        twice; :meth:`hydrostatics` raises it, unless :attr:`partial` is set. The test is the
+        winding number of the other body at centres and corners of panels and at parts of pierced
+        edges, farther from its panels than both are from their surfaces.
 
         Returns
         -------

@@ -6,6 +6,8 @@ use crate::{degenerate, faired};
 use indexmap::IndexMap;
 use moldloft_budget::{Budget, Spent};
 use moldloft_diag::{Diagnostic, Sources};
+use moldloft_io::NamedGrid;
+use moldloft_lang::functions::plots::grids_of;
 use moldloft_lang::model_file::units::{self, PhysicalDimension};
 use moldloft_lang::run::interpreter::{Inputs, Settings};
 use moldloft_lang::run::program::{self, RunContext};
@@ -43,6 +45,8 @@ pub struct Document {
     pub(crate) dual: Option<Box<Evaluation<Dual4>>>,
     pub(crate) panelled: Option<(u64, Arc<Panelled>)>,
     pub(crate) bodied: Option<Arc<crate::measures::bodied::Bodied>>,
+    /// See [`Document::inner_skins`].
+    pub(crate) inner_skins: Option<(Arc<Panelled>, Vec<Diagnostic>)>,
     pub(crate) whole: HashMap<&'static str, crate::measures::bodied::Whole>,
     pub(crate) blocked: Option<(u64, Arc<crate::measures::blocks::Blocked>)>,
     /// Division counts at the parameter values of the text, and the version of the text.
@@ -178,6 +182,7 @@ impl Document {
             dual: None,
             panelled: None,
             bodied: None,
+            inner_skins: None,
             whole: HashMap::new(),
             blocked: None,
             nominal: None,
@@ -281,6 +286,7 @@ impl Document {
         self.dual = None;
         self.panelled = None;
         self.bodied = None;
+        self.inner_skins = None;
         self.whole.clear();
         self.blocked = None;
         self.nominal = None;
@@ -808,6 +814,13 @@ impl Document {
         found.into_iter().map(|(_, name, shape, value)| (name, shape, value)).collect()
     }
 
+    /// The curves, surfaces and blocks of points among the variables, with those in records and
+    /// lists (`name.member`, `name[number]`), that have an extent.
+    pub fn grids(&self) -> Vec<NamedGrid> {
+        let variables = self.variables();
+        grids_of(variables.iter().map(|(name, _, value)| (name.as_str(), value)))
+    }
+
     /// The lines printed by the program.
     pub fn printed(&self) -> &[String] {
         &self.plain.env.printed
@@ -900,7 +913,9 @@ impl Document {
             let none = Diagnostic::error("no-mesh", "the model has no panels");
             self.or_spent(none.help("show a surface"))
         })?;
-        let coarse = panelling.remarks().iter().filter(|n| matches!(n, PanelNote::Coarse { .. }));
+        let is_coarse =
+            |n: &&PanelNote| matches!(n, PanelNote::Coarse { .. } | PanelNote::Undivided { .. });
+        let coarse = panelling.remarks().iter().filter(is_coarse);
         let coarse: Vec<Diagnostic> = coarse.map(|note| self.reported(note)).collect();
         self.export_remarks.extend(coarse);
         Ok(Arc::new(Panelled { panelling, mesh }))

@@ -46,6 +46,31 @@ impl StructuredGrid {
         Vec3::of(self.planes[0][at], self.planes[1][at], self.planes[2][at])
     }
 
+    /// The lines along its first and second index, of a block those on its six faces.
+    pub fn lines(&self) -> Vec<Vec<Vec3>> {
+        let [ni, nj, nk] = self.size;
+        let at = |i: usize, j: usize, k: usize| self.at([i, j, k]);
+        let ends = |n: usize| if n > 1 { vec![0, n - 1] } else { vec![0] };
+        let mut found = Vec::new();
+        for k in if nk > 1 { ends(nk) } else { vec![0] } {
+            found
+                .extend((0..nj).filter(|_| ni > 1).map(|j| (0..ni).map(|i| at(i, j, k)).collect()));
+            found
+                .extend((0..ni).filter(|_| nj > 1).map(|i| (0..nj).map(|j| at(i, j, k)).collect()));
+        }
+        if nk > 1 {
+            for j in ends(nj) {
+                found.extend((0..ni).map(|i| (0..nk).map(|k| at(i, j, k)).collect()));
+                found.extend((1..nk - 1).map(|k| (0..ni).map(|i| at(i, j, k)).collect()));
+            }
+            for i in ends(ni) {
+                found.extend((1..nj - 1).map(|j| (0..nk).map(|k| at(i, j, k)).collect()));
+                found.extend((1..nk - 1).map(|k| (0..nj).map(|j| at(i, j, k)).collect()));
+            }
+        }
+        found
+    }
+
     /// All points, i fastest, then j.
     pub fn points(&self) -> impl Iterator<Item = Vec3> + '_ {
         let [x, y, z] = &self.planes;

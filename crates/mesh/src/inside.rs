@@ -1,12 +1,15 @@
 //! Skins inside other skins: plates within a body, overlapping bodies.
 //!
-//! The skin is divided into pieces without common vertices. The winding number of a piece about a
-//! point of another is a sum of solid angles (van Oosterom and Strackee 1983): 1 inside a closed
-//! piece, 0 outside, one half on it.
+//! The skin is divided into pieces without common vertices. A piece reaches into another one if one
+//! of its places, or a part of an edge between two of the other's panels that it pierces, is inside.
+//! The winding number of a piece about a point is a sum of solid angles (van Oosterom and Strackee
+//! 1983): 1 inside a closed piece, 0 outside, one half on it. Panels are chords: points nearer to
+//! the other piece than the sagittas of both do not count.
 
-use crate::Mesh;
+use crate::{Mesh, sagittas};
 use moldloft_num::union_find::UnionFind;
-use moldloft_num::{Box3, Vec3};
+use moldloft_num::{Box3, BoxTree, Vec3, nearest_on_triangle};
+use std::cell::OnceCell;
 
 /// A piece of the skin with points inside another piece.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -24,8 +27,14 @@ pub struct InnerSkin {
     pub at: Vec3,
 }
 
-/// Number of panels of a piece that are tested.
+/// Number of panels of a piece whose corners and middles are tested.
 const PLACES: usize = 48;
+
+/// Number of parts of pierced edges that are tested.
+const PIERCED_PARTS: usize = 64;
+
+/// Distance of points that coincide, relative to the size of the model.
+const COINCIDENT: f64 = 1e-9;
 
 /// A point about which a piece winds more than this is inside it: no point on a skin is, except in
 /// a sharp hollow.
@@ -40,6 +49,10 @@ struct SkinPiece {
     bounds: Box3,
     open: bool,
     image_of: Option<usize>,
+    /// Maximum distance of the surface from the panels.
+    sagitta: f64,
+    /// Over the triangles.
+    tree: OnceCell<BoxTree>,
 }
 
 /// The pieces of the skin that are inside others, wholly or partly; `mirrors` are the axes normal
@@ -48,13 +61,13 @@ pub fn inner_skins(mesh: &Mesh<f64>, mirrors: &[u8]) -> Vec<InnerSkin> {
     let mut pieces = pieces(mesh);
     let size = mesh.bounds().diagonal();
     for &axis in mirrors {
-        add_images(&mut pieces, usize::from(axis), 1e-9 * size);
+        add_images(&mut pieces, usize::from(axis), COINCIDENT * size);
     }
     let mut found: Vec<InnerSkin> = Vec::new();
     for (i, piece) in pieces.iter().enumerate().filter(|(_, p)| p.image_of.is_none()) {
         for (j, around) in pieces.iter().enumerate().filter(|&(j, _)| j != i) {
-            let at = piece.places.iter().find(|&&p| around.contains(p));
-            let Some(&at) = at else { continue };
+            let near = COINCIDENT * size + 2.0 * (piece.sagitta + around.sagitta);
+            let Some(at) = piece.reach_into(around, near) else { continue };
             let cavity = piece.is_cavity_of(around);
             let (patch, around) = (piece.patch, pieces[around.image_of.unwrap_or(j)].patch);
             let pair = |f: &InnerSkin| {
@@ -73,6 +86,60 @@ fn within(b: &Box3, p: Vec3) -> bool {
 }
 
 impl SkinPiece {
+    /// A point of this piece inside the other one, farther than `near` from it.
+    fn reach_into(&self, around: &Self, near: f64) -> Option<Vec3> {
+        if !self.bounds.meets(around.bounds) {
+            return None;
+        }
+        let inside = |p: &Vec3| around.is_farther(*p, near) && around.contains(*p);
+        self.places.iter().copied().find(inside).or_else(|| {
+            let parts = self.pierced_parts(around, near);
+            let step = parts.len().div_ceil(PIERCED_PARTS).max(1);
+            parts.into_iter().step_by(step).find(inside)
+        })
+    }
+
+    /// Middles of the parts into which the other piece divides edges of this one.
+    fn pierced_parts(&self, other: &Self, near: f64) -> Vec<Vec3> {
+        let mut found = Vec::new();
+        let (mut met, mut cuts) = (Vec::new(), Vec::new());
+        for &[a, b, c] in &self.triangles {
+            for [p, q] in [[a, b], [b, c], [c, a]] {
+                let bounds = Box3::around([p, q]);
+                if !bounds.meets(other.bounds) {
+                    continue;
+                }
+                met.clear();
+                other.tree().meeting(bounds, &mut met);
+                cuts.clear();
+                cuts.extend(met.iter().filter_map(|&t| pierced(p, q, other.triangles[t])));
+                if cuts.is_empty() {
+                    continue;
+                }
+                cuts.extend([0.0, 1.0]);
+                cuts.sort_by(f64::total_cmp);
+                let middles = cuts.windows(2).map(|w| p + (q - p) * (0.5 * (w[0] + w[1])));
+                found.extend(middles.filter(|&m| other.is_farther(m, near)));
+            }
+        }
+        found
+    }
+
+    fn tree(&self) -> &BoxTree {
+        let bounds = |t: &[Vec3; 3]| Box3::around(*t);
+        self.tree.get_or_init(|| BoxTree::new(self.triangles.iter().map(bounds).collect()))
+    }
+
+    /// True for a point within the bounds and farther than `near` from the panels.
+    fn is_farther(&self, p: Vec3, near: f64) -> bool {
+        if !within(&self.bounds, p) {
+            return false;
+        }
+        let mut met = Vec::new();
+        self.tree().meeting(Box3::around([p]).grown(near), &mut met);
+        met.into_iter().all(|t| p.distance(nearest_on_triangle(p, self.triangles[t])) > near)
+    }
+
     fn contains(&self, p: Vec3) -> bool {
         let angle =
             || self.triangles.iter().map(|t| solid_angle(t.map(|q| q - p))).sum::<f64>().abs();
@@ -91,6 +158,19 @@ impl SkinPiece {
     }
 }
 
+/// Where a line from `p` to `q` pierces a triangle: its part of the length, between 0 and 1.
+fn pierced(p: Vec3, q: Vec3, [a, b, c]: [Vec3; 3]) -> Option<f64> {
+    let (line, normal) = (q - p, (b - a).cross(c - a));
+    let (from, to) = (normal.dot(p - a), normal.dot(q - a));
+    if (from < 0.0) == (to < 0.0) {
+        return None;
+    }
+    let side = |u: Vec3, v: Vec3| line.dot((u - p).cross(v - p));
+    let sides = [side(a, b), side(b, c), side(c, a)];
+    let within = sides.iter().all(|s| *s >= 0.0) || sides.iter().all(|s| *s <= 0.0);
+    within.then(|| from / (from - to))
+}
+
 /// The solid angle of a triangle seen from the origin.
 fn solid_angle([a, b, c]: [Vec3; 3]) -> f64 {
     let [x, y, z] = [a, b, c].map(Vec3::norm);
@@ -101,6 +181,7 @@ fn solid_angle([a, b, c]: [Vec3; 3]) -> f64 {
 
 fn pieces(mesh: &Mesh<f64>) -> Vec<SkinPiece> {
     let skin = mesh.skin_faces();
+    let sagitta_of_patch = sagittas(mesh);
     let mut joined = UnionFind::new(mesh.positions().len());
     for &face in &skin {
         let [a, rest @ ..] = mesh.faces()[face];
@@ -135,9 +216,14 @@ fn pieces(mesh: &Mesh<f64>) -> Vec<SkinPiece> {
             patch: mesh.topology().patch_of(faces[0]),
             bounds: Box3::around(faces.iter().flat_map(corners)),
             places: faces.iter().step_by(step).flat_map(places).collect(),
+            sagitta: faces
+                .iter()
+                .map(|&f| sagitta_of_patch[mesh.topology().patch_of(f)])
+                .fold(0.0, f64::max),
             triangles: triangles.collect(),
             open,
             image_of: None,
+            tree: OnceCell::new(),
         }
     };
     faces.into_iter().zip(open).map(piece).collect()
@@ -165,6 +251,7 @@ fn add_images(pieces: &mut Vec<SkinPiece>, axis: usize, near: f64) {
             bounds,
             places: Vec::new(),
             image_of: Some(piece.image_of.unwrap_or(k)),
+            tree: OnceCell::new(),
             ..*piece
         };
         pieces.push(image);
@@ -175,6 +262,7 @@ fn add_images(pieces: &mut Vec<SkinPiece>, axis: usize, near: f64) {
 mod tests {
     use super::*;
     use crate::{PatchInfo, TopologyBuilder};
+    use moldloft_testing::{Random, rounds};
 
     /// The six faces of a box as patches of one body, or its bottom alone.
     fn add_box(
@@ -234,5 +322,85 @@ mod tests {
         let over = ([0.0, 1.0, 0.0], [4.0, 2.0, 2.0], 6);
         let near = ([1.0, -1.5, 0.5], [2.0, -0.5, 1.0], 6);
         assert_eq!(found(&[over, near], &[1]).len(), 1);
+    }
+
+    /// A box turned at random, as its centre and half axes.
+    fn turned_box(random: &mut Random) -> (Vec3, [Vec3; 3]) {
+        let x = random.point().normalized().unwrap();
+        let y = x.cross(random.point()).normalized().unwrap();
+        let size = [0; 3].map(|_| random.between(0.1, 1.0));
+        let centre = random.point() * 0.8;
+        (centre, [x * size[0], y * size[1], x.cross(y) * size[2]])
+    }
+
+    /// The largest gap between two boxes along an axis that may part them; negative when they
+    /// overlap (Gottschalk, Lin and Manocha 1996).
+    fn gap((a, us): &(Vec3, [Vec3; 3]), (b, vs): &(Vec3, [Vec3; 3])) -> f64 {
+        let crossed = us.iter().flat_map(|u| vs.iter().map(move |v| u.cross(*v)));
+        let axes = us.iter().chain(vs).copied().chain(crossed);
+        axes.filter_map(Vec3::normalized).fold(f64::NEG_INFINITY, |most, n| {
+            let reach: f64 = us.iter().chain(vs).map(|u| u.dot(n).abs()).sum();
+            most.max((*b - *a).dot(n).abs() - reach)
+        })
+    }
+
+    #[test]
+    fn random_boxes_overlap_unless_a_plane_parts_them() {
+        let mut random = Random::new(7);
+        let mut counts = [0; 2];
+        for _ in 0..rounds(400, 40_000) {
+            let boxes = [turned_box(&mut random), turned_box(&mut random)];
+            let gap = gap(&boxes[0], &boxes[1]);
+            if gap.abs() < 1e-6 {
+                continue;
+            }
+            let (mut builder, mut positions) = (TopologyBuilder::new(), Vec::new());
+            for (centre, axes) in &boxes {
+                let first = positions.len();
+                add_box(&mut builder, &mut positions, [-1.0; 3], [1.0; 3], 6);
+                for p in &mut positions[first..] {
+                    *p = *centre + axes[0] * p.x + axes[1] * p.y + axes[2] * p.z;
+                }
+            }
+            let mesh = Mesh::new(builder.build().into(), positions).unwrap();
+            let found = inner_skins(&mesh, &[]);
+            assert_eq!(found.len(), usize::from(gap < 0.0), "{boxes:?} {gap}");
+            counts[found.len()] += 1;
+        }
+        assert!(counts[0] > 50 && counts[1] > 50, "{counts:?}");
+    }
+
+    #[test]
+    fn crossing_bars_overlap_and_a_sleeve_round_a_shaft_does_not() {
+        let bar = ([-4.0, -0.5, -0.5], [4.0, 0.5, 0.5], 6);
+        assert_eq!(found(&[bar, ([-0.5, -4.0, -0.4], [0.5, 4.0, 0.6], 6)], &[]).len(), 1);
+        // A fin whose corners are all outside.
+        assert_eq!(found(&[bar, ([0.1, -9.0, -9.0], [0.12, 9.0, 9.0], 6)], &[]).len(), 1);
+        // Chords of the sleeve's bore reach into the shaft, by less than the sagittas.
+        for (sides, turned) in [(16, 24), (24, 16), (40, 41), (32, 32)] {
+            let (mut builder, mut positions) = (TopologyBuilder::new(), Vec::new());
+            for (n, radii) in [(sides, [1.0, 0.0]), (turned, [2.0, 1.0])] {
+                let first = positions.len() as u32;
+                // Outer wall up, lid, bore down, bottom.
+                let rim = [(radii[0], 0.0), (radii[0], 3.0), (radii[1], 3.0), (radii[1], 0.0)];
+                for k in 0..n {
+                    let angle = std::f64::consts::TAU * k as f64 / n as f64 + 0.1;
+                    positions.extend(
+                        rim.map(|(r, z)| Vec3::of(r * libm::cos(angle), r * libm::sin(angle), z)),
+                    );
+                }
+                builder.add_vertices(4 * n).unwrap();
+                for side in 0..4 {
+                    let faces = (0..n as u32).map(|k| {
+                        let next = (k + 1) % n as u32;
+                        let at = |k: u32, side: u32| first + 4 * k + side % 4;
+                        [at(k, side), at(next, side), at(next, side + 1), at(k, side + 1)]
+                    });
+                    builder.add_faces(PatchInfo::default(), faces).unwrap();
+                }
+            }
+            let mesh = Mesh::new(builder.build().into(), positions).unwrap();
+            assert_eq!(inner_skins(&mesh, &[]), [], "{sides} {turned}");
+        }
     }
 }

@@ -43,6 +43,19 @@ impl Box3 {
         self.low.x > self.high.x
     }
 
+    /// True when the boxes have a point in common; a box with NaN meets every box.
+    #[inline]
+    pub fn meets(self, o: Self) -> bool {
+        let ([a, b], [c, d]) = ([self.low, self.high], [o.low, o.high]);
+        !(a.x > d.x || c.x > b.x || a.y > d.y || c.y > b.y || a.z > d.z || c.z > b.z)
+    }
+
+    /// The box that is larger by `margin` on each side.
+    pub fn grown(self, margin: f64) -> Self {
+        let by = Vec3 { x: margin, y: margin, z: margin };
+        Self { low: self.low - by, high: self.high + by }
+    }
+
     /// The centre; the origin for the empty box.
     pub fn centre(self) -> Vec3 {
         if self.is_empty() { Vec3::zero() } else { (self.low + self.high) * 0.5 }

@@ -14,6 +14,7 @@
 
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 
+mod box_tree;
 mod boxes;
 mod division;
 mod dual;
@@ -37,6 +38,7 @@ mod triangle;
 pub mod union_find;
 mod vec3;
 
+pub use box_tree::BoxTree;
 pub use boxes::Box3;
 pub use division::{modulo, remainder, whole_quotient};
 pub use dual::{Dual, Dual4};

@@ -110,6 +110,13 @@ pub enum PanelNote {
         /// The tolerance.
         tolerance: f64,
     },
+    /// Triangles of a body that no tolerance divides, and that are not its surface.
+    Undivided {
+        /// The body.
+        patch: String,
+        /// Differences of their area and volume from those of the body, relative to these.
+        missed: [f64; 2],
+    },
     /// Number of further contradictions.
     More(usize),
 }
@@ -127,7 +134,7 @@ impl PanelNote {
             PanelNote::PartEnds { .. } => "part-not-named",
             PanelNote::Border { .. } => "border-not-joined",
             PanelNote::Knuckle { .. } => "knuckle-across-panels",
-            PanelNote::Coarse { .. } => "coarse-panels",
+            PanelNote::Coarse { .. } | PanelNote::Undivided { .. } => "coarse-panels",
         }
     }
 
@@ -139,6 +146,7 @@ impl PanelNote {
                 | PanelNote::Border { .. }
                 | PanelNote::Knuckle { .. }
                 | PanelNote::Coarse { .. }
+                | PanelNote::Undivided { .. }
         )
     }
 
@@ -183,6 +191,9 @@ impl PanelNote {
             PanelNote::Coarse { .. } => {
                 "a larger tolerance, or two surfaces that meet at the knuckle, the pole or the end of the fold"
             }
+            PanelNote::Undivided { .. } => {
+                "a greater depth of a set makes finer triangles; files of exact faces, such as STEP, need none"
+            }
             PanelNote::More(_) => "fix those that are reported first",
         };
         text.to_string()
@@ -196,7 +207,8 @@ impl PanelNote {
             PanelNote::Pieces { patch, .. }
             | PanelNote::Border { patch, .. }
             | PanelNote::Knuckle { patch, .. }
-            | PanelNote::Coarse { patch, .. } => Some(patch),
+            | PanelNote::Coarse { patch, .. }
+            | PanelNote::Undivided { patch, .. } => Some(patch),
             PanelNote::Apart { patches, .. } => Some(&patches[1]),
             PanelNote::Junction { patches, .. } | PanelNote::Unjoined { patches, .. } => {
                 Some(&patches[0])
@@ -317,6 +329,11 @@ impl std::fmt::Display for PanelNote {
             PanelNote::Coarse { patch, distance, tolerance } => write!(
                 f,
                 "panels of `{patch}` are {distance:.2e} from the surface, farther than the tolerance {tolerance:.2e}"
+            ),
+            PanelNote::Undivided { patch, missed: [area, volume] } => write!(
+                f,
+                "the triangles of `{patch}` stay as they are, no tolerance divides them: their area misses that \
+                 of the body by {area:.1e}, their volume by {volume:.1e} of it"
             ),
             PanelNote::More(n) => write!(f, "{n} more contradictions among divisions"),
         }

@@ -116,8 +116,8 @@ impl Panelling {
     }
 
     /// The panelling with enough divisions for this accuracy; stated divisions are a minimum.
-    /// Bodies without a border are unchanged. Panels that remain farther away are reported as a
-    /// warning.
+    /// Bodies without a border are unchanged, which is reported unless their triangles are their
+    /// surface. Panels that remain farther away are reported as a warning.
     ///
     /// # Errors
     /// A [`CallError`] when there would be too many panels.
@@ -125,6 +125,7 @@ impl Panelling {
         let mut asked = *fineness;
         for round in 1.. {
             let mut made = Self::made(graph, None, None, Some(&asked))?;
+            made.remarks.extend(made.bodies.iter().filter_map(MeshedBody::undivided));
             let (patch, distance) = made.farthest(graph).unwrap_or((0, 0.0));
             if distance <= fineness.chord {
                 return Ok(made);

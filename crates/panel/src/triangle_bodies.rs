@@ -13,6 +13,9 @@ use moldloft_registry::{Border, BorderCurve, CallError, Scalar, TriangleBody, Va
 use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
 
+/// Relative difference of measures that rounding explains.
+const MEASURE_ROUNDING: f64 = 1e-9;
+
 /// A shown object that is a body.
 #[derive(Clone, Debug)]
 pub(crate) struct MeshedBody {
@@ -171,6 +174,20 @@ impl MeshedBody {
     /// True when it may join neighbours.
     pub fn has_border(&self) -> bool {
         self.facets.border.is_some()
+    }
+
+    /// The note of a body whose triangles miss its measures and that has no border to be divided by.
+    pub fn undivided(&self) -> Option<PanelNote> {
+        let body = &self.facets;
+        if self.has_border() {
+            return None;
+        }
+        let triangles = TriangleBody::new(body.points.clone(), body.triangles.clone());
+        let [own, exact] = [triangles.of_triangles, body.of_triangles];
+        let relative = |a: f64, b: f64| if a == b { 0.0 } else { ((a - b) / b).abs() };
+        let missed = [relative(own.area, exact.area), relative(own.volume, exact.volume)];
+        let misses = missed.iter().any(|m| *m > MEASURE_ROUNDING);
+        misses.then(|| PanelNote::Undivided { patch: self.name.to_string(), missed })
     }
 
     /// Divides its border; a border that would cross itself stays as it was and joins nothing, and the

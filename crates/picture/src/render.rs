@@ -4,7 +4,7 @@ use crate::camera::{Aimed, Camera, ScreenPoint};
 use crate::lettering::{self, PointName};
 use crate::palette::{Gamma, patch_colour};
 use crate::raster::{PanelSides, Raster, ShadedVertex, length};
-use moldloft_mesh::{Mesh, Tag, is_triangle};
+use moldloft_mesh::{Mesh, Tag, is_triangle, sagittas};
 use moldloft_num::{Box3, Vec3};
 use std::fmt;
 
@@ -178,7 +178,8 @@ pub fn render_while(
     let mut raster = Raster::new(2 * width, 2 * height, top, bottom, Gamma::new());
     let diagonal = Box3::around(all.iter().copied()).diagonal();
     goes_on()?;
-    let lift = f64::max(1e-3 * diagonal, 2.0 * sagitta(mesh));
+    let sagitta = sagittas(mesh).into_iter().fold(0.0, f64::max);
+    let lift = f64::max(1e-3 * diagonal, 2.0 * sagitta);
     goes_on()?;
     let painter = Painter { mesh, aimed: &aimed, gamma: &gamma, options, lift };
     for &side in &sides {
@@ -236,35 +237,6 @@ pub fn render_while(
         axes(&mut raster, &aimed, width, height);
     }
     encoded(&raster.halved(), width, height)
-}
-
-/// Approximate maximum distance of a surface from its panels: an edge of length l between normals
-/// at an angle a is a l / 8 from its arc. Creases do not count.
-fn sagitta(mesh: &Mesh) -> f64 {
-    let positions = mesh.positions();
-    let mut most = 0.0_f64;
-    let mut normals = vec![Vec3::zero(); positions.len()];
-    for patch in mesh.patches() {
-        let faces = &mesh.faces()[patch.faces.clone()];
-        faces.iter().flatten().for_each(|&v| normals[v as usize] = Vec3::zero());
-        for &face in faces {
-            let [a, b, c, d] = face.map(|v| positions[v as usize]);
-            let normal = (c - a).cross(d - b);
-            face.iter().for_each(|&v| normals[v as usize] += normal);
-        }
-        for &face in faces {
-            for (v, w) in face.into_iter().zip(face.into_iter().cycle().skip(1)) {
-                let (v, w) = (v as usize, w as usize);
-                let ends = [normals[v], normals[w]].map(Vec3::normalized);
-                let [Some(m), Some(n)] = ends else { continue };
-                let angle = (m - n).norm();
-                if angle < 0.68 {
-                    most = most.max(angle * (positions[v] - positions[w]).norm() / 8.0);
-                }
-            }
-        }
-    }
-    most
 }
 
 /// The signs of the coordinates in a model and its mirror images.

@@ -830,9 +830,10 @@ impl PyDocument {
         py: Python<'py>,
         width: usize,
         height: usize,
+        only: Vec<String>,
     ) -> PyResult<Bound<'py, PyBytes>> {
         let picture =
-            self.long_checked(py, move |d| moldloft::export::picture(d, width, height))?;
+            self.long_checked(py, move |d| moldloft::export::picture(d, width, height, &only))?;
         Ok(PyBytes::new(py, &picture))
     }
 

@@ -6,11 +6,12 @@
 use crate::patches::{self, Connections, Prepared, PreparedPatch};
 use moldloft_diag::Diagnostic;
 use moldloft_document::{ContourSection, Document};
+use moldloft_io::NamedGrid;
 use moldloft_mesh::{Mesh, Topology};
 use moldloft_model::Object;
 use moldloft_num::{Box3, Order, Vec3};
 use moldloft_picture::patch_colour;
-use moldloft_registry::{ArrayShape, CurveRef, SolidRef, Value};
+use moldloft_registry::{CurveRef, SolidRef, Value};
 use rustc_hash::{FxHashMap, FxHashSet};
 use std::sync::Arc;
 
@@ -478,19 +479,11 @@ fn contour((k, section): (usize, &ContourSection)) -> SceneItem {
         .lines(&lines.collect::<Vec<_>>())
 }
 
-/// Grids of points computed by a program.
+/// Curves, surfaces and blocks of points computed by a program.
 fn grids(document: &Document) -> Vec<SceneItem> {
-    let mut found = Vec::new();
-    for (name, _, value) in document.variables() {
-        let Value::Vectors(points) = value else { continue };
-        let ArrayShape::Grid(m, n) = points.shape else { continue };
-        if m < 2 || n < 2 {
-            continue;
-        }
-        let row = |i: usize| (0..n).map(|j| points.at(i * n + j)).collect();
-        let column = |j: usize| (0..m).map(|i| points.at(i * n + j)).collect();
-        let lines: Vec<Vec<Vec3>> = (0..m).map(row).chain((0..n).map(column)).collect();
-        found.push(SceneItem::new(SceneItemKind::Grid, &name, &name).lines(&lines));
-    }
-    found
+    let made = |NamedGrid { name, grid }: NamedGrid| {
+        let variable = name.split(['[', '.']).next().unwrap_or(&name);
+        SceneItem::new(SceneItemKind::Grid, &name, variable).lines(&grid.lines())
+    };
+    document.grids().into_iter().map(made).collect()
 }

@@ -3,8 +3,8 @@
 use crate::facts::number;
 use crate::frame::ReplyFrame;
 use moldloft_document::Document;
+use moldloft_io::NamedGrid;
 use moldloft_mesh::{BlockFace, Blocks, HexBlock};
-use moldloft_registry::{ArrayShape, Value as Quantity};
 use serde_json::{Value, json};
 
 /// Maximum number of folded cells drawn; all are counted.
@@ -141,39 +141,20 @@ fn plane_parts(
     }))
 }
 
-/// Blocks among the variables of a program: lists of layers, which are grids of points of equal
-/// size.
+/// Blocks among the variables of a program, with those in records and lists.
 fn computed(document: &Document) -> Vec<Blocks> {
-    let mut found = Vec::new();
-    for (name, _, value) in document.variables() {
-        let Quantity::List(layers) = value else { continue };
-        let grids: Option<Vec<_>> = layers
-            .iter()
-            .map(|layer| match layer {
-                Quantity::Vectors(points) => match points.shape {
-                    ArrayShape::Grid(m, n) => Some((points, [m, n])),
-                    ArrayShape::Row(_) => None,
-                },
-                _ => None,
-            })
-            .collect();
-        let Some(grids) = grids else { continue };
-        let Some(&(_, [ni, nj])) = grids.first() else { continue };
-        if grids.iter().any(|(_, shape)| *shape != [ni, nj]) {
-            continue;
-        }
-        let nk = grids.len();
+    let made = |NamedGrid { name, grid }: NamedGrid| {
+        let [ni, nj, nk] = grid.size;
         let places =
             (0..ni).flat_map(|i| (0..nj).flat_map(move |j| (0..nk).map(move |k| [i, j, k])));
-        let positions = places.map(|[i, j, k]| grids[k].0.at(i * nj + j)).collect();
         let block = HexBlock {
             name,
-            size: [ni, nj, nk],
-            vertices: (0..(ni * nj * nk) as u32).collect(),
+            size: grid.size,
+            vertices: (0..grid.count() as u32).collect(),
             faces: std::array::from_fn(|_| BlockFace::default()),
         };
         // A single layer is not a block.
-        found.extend(Blocks::new(positions, vec![block]).ok());
-    }
-    found
+        Blocks::new(places.map(|place| grid.at(place)).collect(), vec![block]).ok()
+    };
+    document.grids().into_iter().filter_map(made).collect()
 }

@@ -75,6 +75,13 @@ def add(parser: argparse.ArgumentParser) -> None:
         "--size", metavar="WxH", type=_size, default=(1200, 800), help="pixels; default 1200x800"
     )
     parser.add_argument(
+        "--only",
+        metavar="NAME",
+        nargs="+",
+        default=[],
+        help="draw these objects, patches, contours or arrays, with their parts; default: all",
+    )
+    parser.add_argument(
         "--traced",
         metavar="SET",
         help="ray trace this set: its exact surface with lights, shadows and colours",
@@ -109,7 +116,7 @@ def run(options: argparse.Namespace) -> int:
         progress.stage("drawing")
         path = options.output or f"{stem_of(options)}.png"
         if options.traced is None:
-            picture = model.picture(*options.size)
+            picture = model.picture(*options.size, only=options.only)
         else:
             picture = _traced(options, model)
         emit(path, picture, [options.model])

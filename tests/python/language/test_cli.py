@@ -140,6 +140,23 @@ def test_render(cli, tmp_path):
     cli("render", HULL, "--size", "0x200", status=2)
 
 
+def test_arrays_of_a_program_are_drawn(cli, tmp_path):
+    model = tmp_path / "grids.sdl"
+    model.write_text(
+        "surface sheet[3,4]; for (i = 1:3) { for (j = 1:4) sheet[i,j] = {2*i, 3*j, 0}; }\n"
+        "curve c[5]; for (i = 1:5) c[i] = {20, i, 0};\n"
+    )
+    cli("render", model, "-o", "all.png", "--size", "320x200")
+    cli("render", model, "--only", "sheet", "-o", "s.png", "--size", "320x200")
+    cli("render", model, "--only", "sheet", "c", "-o", "both.png", "--size", "320x200")
+    pictures = [(tmp_path / name).read_bytes() for name in ("all.png", "s.png", "both.png")]
+    assert pictures[0] == pictures[2] != pictures[1]
+    assert "did you mean" in cli("render", model, "--only", "shet", status=1).stderr
+    model.write_text("surface s[3,4];\n")
+    assert "nothing to see" in cli("render", model, "-o", "none.png", status=1).stderr
+    assert not (tmp_path / "none.png").exists()
+
+
 def test_render_traced(cli, tmp_path):
     tee = str(SAILBOAT.parent / "implicit/tee.sdl")
     cli("render", tee, "--traced", "tee", "-o", "tee.png", "--size", "160x120", "--samples", "1")

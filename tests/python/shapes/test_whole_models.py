@@ -59,7 +59,7 @@ def test_a_model_of_which_an_object_failed_has_no_figures(tmp_path: Path) -> Non
     assert not m.hydrostatics().partial and m.hydrostatics().volume == pytest.approx(whole)
 
 
-def test_inner_plates_and_overlaps_are_named() -> None:
+def test_inner_plates_and_overlaps_are_named(tmp_path: Path) -> None:
     ball = """
     AbsPoint A(0, 0, -1); AbsPoint B(0, 0, 1); AbsPoint C(1, 0, -1); Line axis(A, B);
     Arc half(A, {1, 0, 0}, B, type = 1); RevSurf ball(half, axis, 0, 2*PI);
@@ -68,7 +68,14 @@ def test_inner_plates_and_overlaps_are_named() -> None:
     assert m.inner_skins() == [] and m.hydrostatics().doubts == []
     other = moldloft.loads(ball + "CopySurf other(ball, A, C, 1, 1, 1);")
     assert [d.id for d in other.inner_skins()] == ["bodies-overlap"]
+    with pytest.raises(moldloft.errors.ModelError, match="overlap"):
+        other.hydrostatics()
+    with pytest.raises(moldloft.errors.ModelError, match="overlap"):
+        other.write(tmp_path / "two.gdf")
+    other.write(tmp_path / "two.stl")
+    other.partial = True
     assert any("overlap" in remark for remark in other.hydrostatics().remarks)
+    other.write(tmp_path / "two.gdf")
     apart = moldloft.loads(ball + "AbsPoint D(2.5, 0, -1); CopySurf other(ball, A, D, 1, 1, 1);")
     assert apart.inner_skins() == []
     plate = moldloft.loads(
@@ -76,6 +83,8 @@ def test_inner_plates_and_overlaps_are_named() -> None:
         "AbsPoint h(0.2, 0.2, 0); Line ef(e, f); Line gh(g, h); RuledSurf plate(ef, gh);"
     )
     assert [(d.id, d.object) for d in plate.inner_skins()] == [("inner-plate", "plate")]
+    with pytest.raises(moldloft.errors.ModelError, match="inside the body"):
+        plate.hydrostatics()
 
 
 def test_a_submerged_body_is_stable_by_its_centre_of_buoyancy() -> None:

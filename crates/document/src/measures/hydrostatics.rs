@@ -37,7 +37,8 @@ impl Document {
     /// The hydrostatics of the model.
     ///
     /// # Errors
-    /// If there is no skin, or it is open below the water and an incomplete model is not allowed.
+    /// If there is no skin; unless an incomplete model is allowed, if the skin is open below the
+    /// water, bodies overlap, or a plate is inside a body.
     pub fn hydrostatics(
         &mut self,
         options: &HydrostaticsOptions,
@@ -73,10 +74,17 @@ impl Document {
     /// The skin of all shown surfaces and bodies, cached until the model changes.
     ///
     /// # Errors
-    /// If the panels exceed the limit, or a surface is not finite.
+    /// If the panels exceed the limit, or a surface is not finite; unless an incomplete model is
+    /// allowed, if bodies overlap or a plate is inside a body.
     pub(crate) fn bodied(&mut self, accuracy: f64) -> Result<Arc<Bodied>, Diagnostic> {
         // The skin of an incomplete model looks like that of a complete one.
         self.entire().map_err(|mut faults| faults.swap_remove(0))?;
+        if !self.partial()
+            && let Some(mut fault) = self.inner_skins()?.into_iter().next()
+        {
+            fault.severity = Severity::Error;
+            return Err(fault.help("m.partial = True, or --keep-going, counts them as they are"));
+        }
         let clock = self.plain.graph.last_change();
         if let Some(known) = &self.bodied
             && known.clock == clock
@@ -131,13 +139,23 @@ impl Document {
     }
 
     /// Warnings about plates of the skin inside a body, and about bodies that overlap and whose
-    /// common volume counts twice.
+    /// common volume counts twice; cached until the panels change.
     ///
     /// # Errors
     /// If the panels exceed the limit.
     pub fn inner_skins(&mut self) -> Result<Vec<Diagnostic>, Diagnostic> {
         let panelled = self.panelled()?;
-        let mesh = &panelled.mesh;
+        if let Some((of, found)) = &self.inner_skins
+            && Arc::ptr_eq(of, &panelled)
+        {
+            return Ok(found.clone());
+        }
+        let found = self.found_inside(&panelled.mesh);
+        self.inner_skins = Some((panelled, found.clone()));
+        Ok(found)
+    }
+
+    fn found_inside(&self, mesh: &Mesh) -> Vec<Diagnostic> {
         let name = |patch: usize| mesh.patches()[patch].info.name.as_str();
         let report = |inner: &InnerSkin| {
             let (skin, around, at) = (name(inner.patch), name(inner.around), inner.at);
@@ -168,7 +186,7 @@ impl Document {
             let [skin, around] = [inner.patch, inner.around].map(|patch| self.owner(name(patch)));
             !(inner.cavity && skin.is_some() && skin == around)
         };
-        Ok(inner_skins(mesh, &self.mirrors()).iter().filter(own).map(report).collect())
+        inner_skins(mesh, &self.mirrors()).iter().filter(own).map(report).collect()
     }
 
     /// The object of a patch, whose name is that of the object or begins with it and a dot.

@@ -17,6 +17,6 @@ pub const FORMAT: Format = Format {
 
 fn write(export: &mut Export<'_>) -> Result<Vec<NamedFile>, ExportFailure> {
     let Options { width, height, .. } = Options::default();
-    let bytes = picture(export.document, width, height)?;
+    let bytes = picture(export.document, width, height, &[])?;
     Ok(export.main_file(bytes))
 }

@@ -4,7 +4,7 @@ use crate::functions::grid_values::grid_of;
 use crate::run::usage::spent;
 use moldloft_budget::Budget;
 use moldloft_diag::Diagnostic;
-use moldloft_io::StructuredGrid;
+use moldloft_io::{NamedGrid, StructuredGrid};
 use moldloft_mesh::{Mesh, PatchInfo, TopologyBuilder};
 use moldloft_num::{Box3, Vec3};
 use moldloft_picture::{Camera, Options, PALETTE, PictureError, StyledPolyline, render_while};
@@ -49,32 +49,6 @@ fn usual(low: Vec3, high: Vec3) -> &'static str {
         (true, _, _) => "x",
         _ => "iso",
     }
-}
-
-/// The lines of a grid along its first and second index, of a block those on its six faces.
-fn lines(grid: &StructuredGrid) -> Vec<Vec<Vec3>> {
-    let [ni, nj, nk] = grid.size;
-    let at = |i: usize, j: usize, k: usize| {
-        let n = i + ni * (j + nj * k);
-        Vec3::of(grid.planes[0][n], grid.planes[1][n], grid.planes[2][n])
-    };
-    let ends = |n: usize| if n > 1 { vec![0, n - 1] } else { vec![0] };
-    let mut found = Vec::new();
-    for k in if nk > 1 { ends(nk) } else { vec![0] } {
-        found.extend((0..nj).filter(|_| ni > 1).map(|j| (0..ni).map(|i| at(i, j, k)).collect()));
-        found.extend((0..ni).filter(|_| nj > 1).map(|i| (0..nj).map(|j| at(i, j, k)).collect()));
-    }
-    if nk > 1 {
-        for j in ends(nj) {
-            found.extend((0..ni).map(|i| (0..nk).map(|k| at(i, j, k)).collect()));
-            found.extend((1..nk - 1).map(|k| (0..ni).map(|i| at(i, j, k)).collect()));
-        }
-        for i in ends(ni) {
-            found.extend((1..nj - 1).map(|j| (0..nk).map(|k| at(i, j, k)).collect()));
-            found.extend((1..nk - 1).map(|k| (0..nj).map(|j| at(i, j, k)).collect()));
-        }
-    }
-    found
 }
 
 /// The faces of a grid: of a surface itself, of a block the six around it, as corners by number.
@@ -170,19 +144,27 @@ pub struct DrawnArrays {
     pub view: [f64; 2],
 }
 
-/// The arrays of points among the variables of a program, with those in records and lists; `None`
-/// if none has an extent.
+/// The curves, surfaces and blocks of points among the variables of a program, with those in records
+/// and lists (`name.member`, `name[number]`), that have an extent.
+pub fn grids_of<'a>(
+    variables: impl IntoIterator<Item = (&'a str, &'a Value<f64>)>,
+) -> Vec<NamedGrid> {
+    let mut found = Vec::new();
+    for (name, value) in variables {
+        gather(name, value, &mut found);
+    }
+    found
+}
+
+/// The picture of grids; `None` if there are none.
 ///
 /// # Errors
 /// A budget that is spent.
-pub fn arrays_of_program(
-    variables: &[(String, Value<f64>)],
+pub fn picture_of(
+    grids: Vec<NamedGrid>,
     budget: &Budget,
 ) -> Result<Option<DrawnArrays>, Diagnostic> {
-    let (mut grids, mut names) = (Vec::new(), Vec::new());
-    for (name, value) in variables {
-        gather(name, value, &mut grids, &mut names);
-    }
+    let (names, grids): (Vec<_>, Vec<_>) = grids.into_iter().map(|g| (g.name, g.grid)).unzip();
     if grids.is_empty() {
         return Ok(None);
     }
@@ -194,29 +176,23 @@ pub fn arrays_of_program(
 }
 
 /// Adds the grids that a value holds and that have an extent.
-fn gather(
-    name: &str,
-    value: &Value<f64>,
-    grids: &mut Vec<StructuredGrid>,
-    names: &mut Vec<String>,
-) {
+fn gather(name: &str, value: &Value<f64>, found: &mut Vec<NamedGrid>) {
     match value {
         Value::List(items) => {
             for (k, item) in items.iter().enumerate() {
-                gather(&format!("{name}[{}]", k + 1), item, grids, names);
+                gather(&format!("{name}[{}]", k + 1), item, found);
             }
         }
         Value::Record(record) => {
             for (member, value) in record.names.iter().zip(&record.values) {
-                gather(&format!("{name}.{member}"), value, grids, names);
+                gather(&format!("{name}.{member}"), value, found);
             }
         }
         value => {
             let Ok(grid) = grid_of(value, name) else { return };
             let bounds = Box3::around(grid.points());
             if (bounds.high - bounds.low).norm().is_normal() {
-                grids.push(grid);
-                names.push(name.to_string());
+                found.push(NamedGrid { name: name.to_string(), grid });
             }
         }
     }
@@ -252,7 +228,7 @@ fn drawn(
     for (grid, name) in grids.iter().zip(names) {
         budget.poll().map_err(spent)?;
         if grid.size.iter().filter(|n| **n > 1).count() < 2 {
-            curves.extend(lines(grid).into_iter().map(|points| StyledPolyline {
+            curves.extend(grid.lines().into_iter().map(|points| StyledPolyline {
                 points,
                 colour: CURVE_COLOUR,
                 width: CURVE_WIDTH,
@@ -289,7 +265,7 @@ fn svg(
         .iter()
         .map(|grid| {
             let seen = |line: Vec<Vec3>| line.iter().map(|p| [p.dot(across), p.dot(up)]).collect();
-            lines(grid).into_iter().map(seen).collect()
+            grid.lines().into_iter().map(seen).collect()
         })
         .collect();
     let all = || drawn.iter().flatten().flatten();

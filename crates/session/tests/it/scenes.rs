@@ -269,3 +269,41 @@ fn an_inspector_sees_fields_parents_children_values_and_derivatives() {
     let missing = ask(&mut s, json!({"kind": "inspect", "name": "Z"}));
     assert!(missing.head["error"].as_str().unwrap().contains("`Z`"));
 }
+
+#[test]
+fn arrays_of_a_program_are_lines_and_its_blocks_have_planes() {
+    let text = "record holder { surface skin[3, 4]; curve keel[5]; }
+        surface s[3, 4];
+        for (i = 1:3) { for (j = 1:4) s[i, j] = {i, j, 0}; }
+        curve c[3] = s[, 2];
+        block b = {s, s + {0, 0, 1}, s + {0, 0, 3}};
+        surface parts[2]; parts[1] = s; parts[2] = s + {0, 0, 5};
+        block stack[1]; stack[1] = b[, , 1:2];
+        holder h; h.skin = s;
+        float plain[4];";
+    let mut s = session(text);
+    let viewer = opened(&mut s, 1);
+    let vertices = |name: &str| {
+        let (_, drawn) =
+            viewer.items.iter().find(|(key, _)| key.contains(&format!("\"{name}\"")))?;
+        assert_eq!(drawn.kind, "grid");
+        Some(drawn.parts["position"].len() / 3)
+    };
+    // Lines along both indices; a block's are those on its faces.
+    let surface = Some(3 * 4 + 4 * 3);
+    assert_eq!(
+        (vertices("s"), vertices("parts[1]"), vertices("parts[2]")),
+        (surface, surface, surface)
+    );
+    assert_eq!((vertices("h.skin"), vertices("c")), (surface, Some(3)));
+    assert!(vertices("b") > surface && vertices("stack[1]") > surface);
+    // Points that were never set have no extent.
+    assert_eq!((vertices("h.keel"), vertices("plain"), viewer.items.len()), (None, None, 7));
+    let found = ask(&mut s, json!({"kind": "blocks", "block": "b", "axis": 2, "index": 1}));
+    let blocks = found.head["blocks"].as_array().unwrap();
+    let rows: Vec<_> = blocks.iter().map(|b| (&b["name"], &b["cells"], &b["volume"])).collect();
+    assert_eq!(rows[0], (&json!("b"), &json!(12), &json!(18.0)));
+    assert_eq!(rows[1], (&json!("stack[1]"), &json!(6), &json!(6.0)));
+    assert_eq!(rows.len(), 2);
+    assert!(found.head.get("plane").is_some());
+}
