@@ -59,7 +59,9 @@ pub use mesh::Mesh;
 pub use panel::Panel;
 pub use planar::planar_triangles;
 pub use pulled::pulled_measures;
-pub use quality::{PatchQuality, Statistics, WorstPanel, qualities, quality};
+pub use quality::{
+    PatchQuality, Statistics, WorstPanel, pulled_quality, qualities, quality, worst_quality,
+};
 pub use report::{OpenLoop, TopologyReport};
 pub use sagitta::sagittas;
 pub use section::{Polyline, section, section_where};

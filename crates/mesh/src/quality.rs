@@ -1,9 +1,9 @@
-//! Quality of the panels of a patch: aspect ratio, skewness, warp and jumps of area, with the worst panel named.
+//! Quality of the panels of a patch and of a whole mesh: aspect ratio, skewness, warp and jumps of area, with the worst panel named.
 
 use crate::half_edge::{edges, half_edges};
 use crate::panel::length;
 use crate::{Mesh, Panel};
-use moldloft_num::Vec3;
+use moldloft_num::{Dual4, Real, Vec3};
 
 /// Lowest, highest and mean value of a measure over the panels of a patch.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -168,7 +168,7 @@ impl Tally {
     }
 }
 
-fn aspect(panel: &Panel<f64>) -> f64 {
+fn aspect<T: Real>(panel: &Panel<T>) -> T {
     match *panel {
         Panel::Quad([a, b, c, d]) => {
             let along = length(b + c - a - d);
@@ -177,40 +177,115 @@ fn aspect(panel: &Panel<f64>) -> f64 {
         }
         Panel::Triangle([a, b, c]) => {
             let longest_sq = (b - a).norm_sq().max((c - b).norm_sq()).max((a - c).norm_sq());
-            longest_sq / (2.0 * panel.area()) * (3f64.sqrt() / 2.0)
+            longest_sq / (panel.area() * 2.0) * (3f64.sqrt() / 2.0)
         }
     }
 }
 
 /// The angles at the corners, between the two sides that meet there.
-fn angles(panel: &Panel<f64>) -> impl Iterator<Item = f64> + '_ {
+fn angles<T: Real>(panel: &Panel<T>) -> impl Iterator<Item = T> + '_ {
     let corners = panel.corners();
     let n = corners.len();
     (0..n).map(move |k| {
         let (to_next, to_last) =
             (corners[(k + 1) % n] - corners[k], corners[(k + n - 1) % n] - corners[k]);
-        libm::atan2(length(to_next.cross(to_last)), to_next.dot(to_last))
+        length(to_next.cross(to_last)).atan2(to_next.dot(to_last))
     })
 }
 
-fn skew(panel: &Panel<f64>) -> f64 {
+fn skew<T: Real>(panel: &Panel<T>) -> T {
     let n = panel.corners().len();
     let best = std::f64::consts::PI * (1.0 - 2.0 / n as f64);
-    angles(panel).fold(0.0, |worst: f64, angle| {
-        worst.max((angle - best) / (std::f64::consts::PI - best)).max((best - angle) / best)
+    angles(panel).fold(T::zero(), |worst, angle| {
+        let off = angle - T::from(best);
+        worst.max(off / (std::f64::consts::PI - best)).max(-off / best)
     })
 }
 
-fn warp(panel: &Panel<f64>) -> f64 {
-    let &Panel::Quad([a, b, c, d]) = panel else { return 0.0 };
+fn warp<T: Real>(panel: &Panel<T>) -> T {
+    let &Panel::Quad([a, b, c, d]) = panel else { return T::zero() };
     let normal = (c - a).cross(d - b);
     let size = length(normal);
-    if size == 0.0 {
-        return 0.0;
+    if size.re() == 0.0 {
+        return T::zero();
     }
     // Half the distance between the diagonals.
-    let height = 0.5 * (b - a).dot(normal).abs() / size;
+    let height = (b - a).dot(normal).abs() * 0.5 / size;
     height / panel.area().sqrt()
+}
+
+fn sharpest_angle<T: Real>(panel: &Panel<T>) -> T {
+    angles(panel).fold(T::from(std::f64::consts::PI), T::min)
+}
+
+/// A measure of a mesh's worst panel, and which one is worst.
+struct WorstMeasure<T> {
+    name: &'static str,
+    of: fn(&Panel<T>) -> T,
+    /// True where the smallest is the worst.
+    least: bool,
+}
+
+fn worst_measures<T: Real>() -> [WorstMeasure<T>; 4] {
+    [
+        WorstMeasure { name: "aspect", of: aspect, least: false },
+        WorstMeasure { name: "skew", of: skew, least: false },
+        WorstMeasure { name: "warp", of: warp, least: false },
+        WorstMeasure { name: "angle", of: sharpest_angle, least: true },
+    ]
+}
+
+/// The face with the worst panel by a measure; panels without area do not count.
+fn worst_face<T: Real>(mesh: &Mesh<T>, of: fn(&Panel<T>) -> T, least: bool) -> Option<usize> {
+    let values = (0..mesh.faces().len()).filter_map(|face| {
+        let panel = mesh.panel(face);
+        let value = if least { -of(&panel).re() } else { of(&panel).re() };
+        (panel.area().re() != 0.0).then_some((face, value))
+    });
+    // Of equal ones the first.
+    let worse = |a: (usize, f64), b: (usize, f64)| if b.1 > a.1 { b } else { a };
+    values.reduce(worse).map(|(face, _)| face)
+}
+
+/// The largest aspect ratio, skewness and warp of the panels of a mesh and the smallest angle, as in
+/// [`PatchQuality`], by their names; empty for a mesh of panels without area.
+///
+/// Derivatives are those of the worst panel: of the first of several.
+pub fn worst_quality<T: Real>(mesh: &Mesh<T>) -> Vec<(&'static str, T)> {
+    let worst = |m: WorstMeasure<T>| {
+        let face = worst_face(mesh, m.of, m.least)?;
+        Some((m.name, (m.of)(&mesh.panel(face))))
+    };
+    worst_measures().into_iter().filter_map(worst).collect()
+}
+
+/// The derivatives of a number of [`worst_quality`] by each vertex; `None` for another name, or a
+/// mesh of panels without area.
+pub fn pulled_quality(mesh: &Mesh<f64>, name: &str) -> Option<Vec<Vec3>> {
+    let named = |m: &WorstMeasure<Dual4>| m.name == name;
+    let differentiated = worst_measures::<Dual4>().into_iter().find(named)?;
+    let plain = worst_measures::<f64>().into_iter().find(|m| m.name == name)?;
+    let face = worst_face(mesh, plain.of, plain.least)?;
+    let corners = mesh.faces()[face];
+    let mut out = vec![Vec3::zero(); mesh.positions().len()];
+    for axis in 0..3 {
+        let points: [Vec3<Dual4>; 4] = std::array::from_fn(|k| {
+            let mut point = mesh.positions()[corners[k] as usize].to_array().map(Dual4::from);
+            point[axis].eps[k] = 1.0;
+            Vec3::from(point)
+        });
+        let panel = match mesh.panel(face) {
+            Panel::Quad(_) => Panel::Quad(points),
+            Panel::Triangle(_) => Panel::Triangle([points[0], points[1], points[2]]),
+        };
+        let slopes = (differentiated.of)(&panel).eps;
+        for (corner, slope) in corners.into_iter().zip(slopes) {
+            let mut point = out[corner as usize].to_array();
+            point[axis] += slope;
+            out[corner as usize] = Vec3::from(point);
+        }
+    }
+    Some(out)
 }
 
 #[cfg(test)]

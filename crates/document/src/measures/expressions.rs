@@ -9,7 +9,7 @@ use moldloft_hydro::USUAL_ACCURACY;
 use moldloft_lang::RunScalar;
 use moldloft_lang::run::interpreter::Inputs;
 use moldloft_lang::run::program::RunContext;
-use moldloft_lang::run::whole::{body_numbers, mesh_numbers, not_finite, one_of};
+use moldloft_lang::run::whole::{WHOLE_GROUPS, body_numbers, not_finite, one_of, panel_numbers};
 use moldloft_lang::source::env::Evaluation;
 use moldloft_lang::source::fault_location::unplaced;
 use moldloft_lang::value::variables::Called as _;
@@ -42,7 +42,7 @@ impl Document {
         &self.expression_remarks
     }
 
-    /// The numbers of `mesh` or `hydrostatics`, cached until the model changes: most callers read
+    /// The numbers of one of [`WHOLE_GROUPS`], cached until the model changes: most callers read
     /// several.
     fn whole_numbers(&mut self, group: &'static str) -> Result<Numbers, Diagnostic> {
         let clock = self.plain.graph.last_change();
@@ -53,8 +53,8 @@ impl Document {
         {
             return Ok(known.numbers.clone());
         }
-        let numbers = if group == "mesh" {
-            mesh_numbers(&self.entire_panels()?.mesh)
+        let numbers = if group != "hydrostatics" {
+            panel_numbers(group, &self.entire_panels()?.mesh)
         } else {
             let bodied = self.bodied(USUAL_ACCURACY)?;
             body_numbers(&bodied.body, &bodied.skin, &symmetry, self.partial())?
@@ -113,11 +113,11 @@ impl Document {
     }
 
     /// Group and member of a name such as `mesh.area` (joined panels) or `hydrostatics.volume`
-    /// (surfaces); `None` if the model has an object `mesh` or `hydrostatics`.
+    /// (surfaces); `None` if the model has an object of the group's name.
     pub(crate) fn whole_name<'t>(&self, text: &'t str) -> Option<(&'static str, &'t str)> {
         let (group, number) = text.trim().rsplit_once('.')?;
         let word = number.chars().all(|c| c.is_ascii_alphanumeric() || c == '_');
-        let group = ["mesh", "hydrostatics"].into_iter().find(|g| *g == group)?;
+        let group = WHOLE_GROUPS.into_iter().find(|g| *g == group)?;
         (word && self.graph().find(group).is_none()).then_some((group, number))
     }
 
@@ -164,9 +164,9 @@ impl Document {
         };
         if !known.contains_key(group) {
             let panelled = self.entire_panels().map_err(|d| vec![d])?;
-            let found = if group == "mesh" {
+            let found = if group != "hydrostatics" {
                 let mesh = panelled.panelling.mesh(&evaluation.graph);
-                mesh_numbers(&mesh.ok_or_else(|| vec![self.or_spent(no_mesh())])?)
+                panel_numbers(group, &mesh.ok_or_else(|| vec![self.or_spent(no_mesh())])?)
             } else {
                 let bodied = self.bodied(USUAL_ACCURACY).map_err(|d| vec![d])?;
                 let graph = &evaluation.graph;

@@ -15,7 +15,7 @@ use moldloft_lang::SolveStatus;
 use moldloft_lang::run::program::STACK_BYTES;
 use moldloft_lang::source::env::Evaluation;
 use moldloft_lang::source::fault_location::unplaced;
-use moldloft_mesh::pulled_measures;
+use moldloft_mesh::{Mesh, pulled_measures, pulled_quality};
 use moldloft_num::{Adjoints, DerivativeTape, Real, Rev, Vec3, solve_pivoting_fully};
 use moldloft_parallel::on_one_thread;
 use moldloft_registry::CallError;
@@ -77,12 +77,14 @@ impl Document {
         let mut mesh: Option<WeightedMesh> = None;
         let mut others = Vec::new();
         for output in outputs {
-            let measure = match self.whole_name(&output.name) {
-                Some(("mesh", "area")) => Some([1.0, 0.0]),
-                Some(("mesh", "volume")) => Some([0.0, 1.0]),
+            let rates = match self.whole_name(&output.name) {
+                Some((group, number)) if group != "hydrostatics" => {
+                    let panelled = self.entire_panels().map_err(|d| vec![d])?;
+                    slopes_by_vertices(&panelled.mesh, group, number)
+                }
                 _ => None,
             };
-            if measure.is_none() && output.name != "mesh" {
+            if rates.is_none() && output.name != "mesh" {
                 others.push(*output);
                 continue;
             }
@@ -94,9 +96,8 @@ impl Document {
             }
             let Some(WeightedMesh { panelled, weights, names }) = &mut mesh else { continue };
             names.push(output.name.clone());
-            let count = if measure.is_some() { 1 } else { 3 * panelled.mesh.positions().len() };
+            let count = if rates.is_some() { 1 } else { 3 * panelled.mesh.positions().len() };
             let given = output.checked(count)?;
-            let rates = measure.map(|[area, volume]| pulled_measures(&panelled.mesh, area, volume));
             for (weights, given) in weights.iter_mut().zip(given) {
                 for (at, weight) in weights.iter_mut().enumerate() {
                     *weight += match &rates {
@@ -263,6 +264,16 @@ impl Document {
             return Ok(positions.map(|all| all.iter().flat_map(|p| p.to_array()).collect()));
         }
         Ok(self.eval_in(evaluation, name).ok().and_then(|value| numbers(&value)))
+    }
+}
+
+/// The derivatives of a number of the mesh by each vertex; `None` for numbers without this way.
+fn slopes_by_vertices(mesh: &Mesh, group: &str, number: &str) -> Option<Vec<Vec3>> {
+    match (group, number) {
+        ("mesh", "area") => Some(pulled_measures(mesh, 1.0, 0.0)),
+        ("mesh", "volume") => Some(pulled_measures(mesh, 0.0, 1.0)),
+        ("mesh_quality", number) => pulled_quality(mesh, number),
+        _ => None,
     }
 }
 

@@ -1,6 +1,6 @@
 //! Gradients in reverse mode against forward mode: examples of all kinds, random models, solve sets, functions from outside.
 
-use crate::common::{ids, open, rounds, sound};
+use crate::common::{ids, number, open, rounds, sound};
 use crate::laws;
 use moldloft_document::{Document, GradientMode, WeightedOutput};
 use moldloft_num::{Dual4, Real};
@@ -164,6 +164,11 @@ fn shared_vertices_measures_and_arrays_by_parameters_and_literals() {
         "mesh",
         "mesh.area",
         "mesh.volume",
+        "mesh.centroid",
+        "mesh_quality.aspect",
+        "mesh_quality.skew",
+        "mesh_quality.warp",
+        "mesh_quality.angle",
         "a({0.1, 0.7})",
         "hull.area * beam",
         "p.x + beam",
@@ -182,6 +187,28 @@ fn shared_vertices_measures_and_arrays_by_parameters_and_literals() {
     document.set(&[("beam".into(), 2.5), ("B.x".into(), 2.75)]).unwrap();
     let (worst, _) = difference(&mut document, &weights, &by).unwrap();
     assert!(worst <= EXACT, "{worst:e}");
+}
+
+#[test]
+fn qualities_of_panels_are_those_of_the_worst_one() {
+    // Panels of a trapezium: the first row is the flattest.
+    let text = "param float h = 0.5 in [0.1, 2]; \
+        AbsPoint A(0, 0, 0); AbsPoint B(4, 0, 0); AbsPoint C(0, h, 0); AbsPoint D(4, h, 0); \
+        Line low(A, B); Line high(C, D); RuledSurf plate(low, high, divisions = {4, 1});";
+    let mut document = sound(text);
+    assert_eq!(number(&mut document, "mesh_quality.aspect"), 2.0);
+    assert_eq!(number(&mut document, "mesh_quality.skew"), 0.0);
+    assert_eq!(number(&mut document, "mesh_quality.warp"), 0.0);
+    let angle = number(&mut document, "mesh_quality.angle");
+    assert!((angle - std::f64::consts::FRAC_PI_2).abs() < 1e-15);
+    // 1 / h, whose slope is -1 / h^2.
+    let output = WeightedOutput { name: "mesh_quality.aspect".into(), weights: vec![vec![1.0]] };
+    for mode in [GradientMode::Forward, GradientMode::Reverse] {
+        let found = document.vjp(std::slice::from_ref(&output), &["h".into()], mode).unwrap();
+        assert!((found.rows[0][0] + 4.0).abs() < 1e-13, "{mode:?} {found:?}");
+        assert_eq!(found.forward.is_empty(), mode == GradientMode::Reverse);
+    }
+    assert!(document.eval("mesh_quality.area").is_err());
 }
 
 #[test]

@@ -10,6 +10,7 @@ use crate::functions::files::predeclared;
 use crate::run::declared_lists::declared_list;
 use crate::run::parts::{self, StatementParts};
 use crate::run::unused;
+use crate::run::whole::WHOLE_GROUPS;
 use crate::source::module::{Module, Modules, Name, RoutineAt};
 use crate::source::scope::RecordAt;
 use crate::value::variables::described;
@@ -295,9 +296,9 @@ impl<'a> Semantics<'a> {
                     }
                 }
                 ExprKind::Member { base, .. } => {
-                    // `hydrostatics.volume` and `mesh.area` belong to the whole model.
+                    // `hydrostatics.volume` belongs to the whole model.
                     let word = m.program.as_name(base).map(|symbol| m.program.name(symbol));
-                    if matches!(word, Some("hydrostatics" | "mesh")) {
+                    if word.is_some_and(|word| WHOLE_GROUPS.contains(&word)) {
                         inner.clear();
                     }
                 }

@@ -1,4 +1,5 @@
-//! Numbers of the whole model in its own program: `hydrostatics.volume`, `mesh.area`.
+//! Numbers of the whole model in its own program: `hydrostatics.volume`, `mesh.area`,
+//! `mesh_quality.aspect`.
 //!
 //! They are those of the visible surfaces and bodies declared so far; reading one evaluates these.
 //! The orientation of the surfaces follows from the panels of the run with plain numbers; a run
@@ -11,7 +12,7 @@ use crate::source::module::Module;
 pub use crate::value::member::not_finite;
 use moldloft_diag::{Diagnostic, Span};
 use moldloft_hydro::{Body, Hydrostatics, Symmetry, USUAL_ACCURACY, hydrostatics};
-use moldloft_mesh::{Mesh, measure};
+use moldloft_mesh::{Mesh, measure, worst_quality};
 use moldloft_model::Graph;
 use moldloft_num::trace::Key;
 use moldloft_num::{Real, Vec3};
@@ -32,10 +33,22 @@ pub fn named<T: Real>(h: &Hydrostatics<T>) -> Vec<(&'static str, Value<T>)> {
     all
 }
 
-/// Measures of the panels of a whole model.
-pub fn mesh_numbers<T: Real>(mesh: &Mesh<T>) -> Vec<(&'static str, Value<T>)> {
+/// The names of the groups of numbers.
+pub const WHOLE_GROUPS: [&str; 3] = ["mesh", "mesh_quality", "hydrostatics"];
+
+/// The numbers of the panels of a whole model: measures, or with the group `mesh_quality` those of
+/// its worst panels.
+pub fn panel_numbers<T: Real>(group: &str, mesh: &Mesh<T>) -> Vec<(&'static str, Value<T>)> {
+    if group == "mesh_quality" {
+        let worst = worst_quality(mesh).into_iter();
+        return worst.map(|(name, x)| (name, Value::Number(x))).collect();
+    }
     let measures = measure(mesh);
-    vec![("area", Value::Number(measures.area)), ("volume", Value::Number(measures.volume))]
+    let numbers = [("area", measures.area), ("volume", measures.volume)];
+    let centres =
+        [("area_centre", Some(measures.area_centre)), ("centroid", measures.centroid)].into_iter();
+    let centres = centres.filter_map(|(name, centre)| Some((name, Value::Vector(centre?))));
+    numbers.into_iter().map(|(name, x)| (name, Value::Number(x))).chain(centres).collect()
 }
 
 /// The hydrostatics of a body in water at z = 0; `symmetry` holds the letters of the planes that mirror it.
@@ -106,7 +119,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
     ) -> Option<Result<Value<T>, Diagnostic>> {
         let symbol = m.program.as_name(base)?;
         let group = m.program.name(symbol).to_string();
-        if !matches!(&*group, "hydrostatics" | "mesh")
+        if !WHOLE_GROUPS.contains(&&*group)
             || self.env.scope.lookup(m.names[symbol.0 as usize]).is_some()
             || self.run.find(&group).is_some()
         {
@@ -154,8 +167,8 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         let found = skins.get(&names).cloned().ok_or_else(no_mesh)?;
         drop(skins);
         let (panelling, skin) = &*found;
-        let numbers = if group == "mesh" {
-            mesh_numbers(&panelling.mesh(graph).ok_or_else(no_mesh)?)
+        let numbers = if group != "hydrostatics" {
+            panel_numbers(group, &panelling.mesh(graph).ok_or_else(no_mesh)?)
         } else {
             let body = skin.body(panelling, graph, USUAL_ACCURACY).ok_or_else(not_finite)?;
             body_numbers(&body, skin, &symmetry, false)?
