@@ -84,8 +84,12 @@ const ON_LINE: f64 = 1e-11;
 /// Maximum slope of a line that is treated as a graph, in steps across per step along.
 const STEEPEST: f64 = 3.0;
 
-/// Tolerance of a boundary, relative to the square.
+/// Tolerance of a boundary of a surface's part, relative to the square.
 pub(crate) const BOUNDARY_FIT: f64 = 1e-11;
+
+/// Tolerance of a boundary between two charts, relative to the square: a crease that is as far
+/// beside it changes areas by the square of this.
+const CREASE_FIT: f64 = 1e-8;
 
 /// Maximum number of quarterings of a square and of halvings of a boundary.
 pub(crate) const DEEPEST: u32 = 14;
@@ -451,7 +455,7 @@ impl<T: Real> Cutter<'_, T> {
             let plain = ChartBoundary::<f64>::through(&found);
             let off = PROBES.iter().map(|&t| (plain.at(t) - root(t)).abs()).fold(0.0, f64::max);
             // The line may end abruptly at the ends of the range.
-            if off > BOUNDARY_FIT && halvings < DEEPEST {
+            if off > CREASE_FIT && halvings < DEEPEST {
                 ranges.push(([middle, range[1]], halvings + 1));
                 ranges.push(([range[0], middle], halvings + 1));
                 continue;
