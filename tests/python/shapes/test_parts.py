@@ -317,3 +317,34 @@ def test_a_nose_on_a_cylinder_has_its_area() -> None:
         assert m.eval("skin.area") == pytest.approx(area(far), rel=1e-9)
         slope = (area(far + 1e-5) - area(far - 1e-5)) / 2e-5
         assert m.derivative("skin.area", "far") == pytest.approx(slope, rel=1e-8)
+
+
+PLATE = """
+param float at = 4.9 in [4.6, 5.6];
+subroutine section(float x, float y) {
+    AbsPoint p(x, y, 0); AbsPoint q(x, 0.5*y, 0); AbsPoint r(x, 0, 0);
+    BCurve c({p, q, r}, degree = 2);
+}
+section m1(0, 0.4); section m2(3.2, 1.3); section m3(6.5, 1.9); section m4(10, 1.7); section m5(12, 1.2);
+CLoftSurf hull({m1.c, m2.c, m3.c, m4.c, m5.c}, visible = 0);
+EdgeSnake centre(2, hull);
+AbsRing c0(centre, 0); AbsRing c1(centre, 1);
+float chord = 1.15;
+AbsPoint n(at, 0, -1); AbsPoint cr(at + 0.3*chord, 0.06*chord, -1); AbsPoint ta(at + chord, 0, -1);
+FoilCurve plan({n, cr, ta}, "64", visible = 0);
+AbsRing gf(centre, 0.4);
+XYZRing lead(gf, "x", at); XYZRing trail(gf, "x", at + chord);
+ProjSnake root(plan, lead, "z=0", ends = {lead, trail});
+SubSnake v1(c0, lead); SubSnake v2(trail, c1);
+PolySnake ventral({v1, root, v2}, breaks = {0.4, 0.55});
+SubSurf skin({hull.u0, hull.v1, ventral, hull.v0}, divisions = {60, 14});
+"""
+
+
+def test_a_part_round_a_projected_foil_misses_the_area_of_the_foil() -> None:
+    m = moldloft.loads(PLATE)
+    for at in (4.65, 4.9, 5.2, 5.55):
+        m["at"] = at
+        p = m["root"](np.linspace(0, 1, 40_001))
+        foil = float(np.trapezoid(p[:, 1], p[:, 0]))
+        assert m.eval("skin.area") + foil == pytest.approx(m.eval("hull.area"), abs=1e-8)

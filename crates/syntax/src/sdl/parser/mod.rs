@@ -471,8 +471,11 @@ pub fn foreign_word(word: &str) -> Option<&'static str> {
             "a function is declared with its types: `function float f(float x) { return x; }`"
         }
         "elif" | "elseif" | "elsif" => "a further condition is `else if (condition)`",
-        "end" | "endif" | "endfor" | "endwhile" | "endfunction" | "begin" | "do" => {
+        "end" | "endif" | "endfor" | "endwhile" | "endfunction" | "begin" => {
             "statements that belong together are in braces, `for (i = 1:n) { ... }`; the last element is `a[a.d1]`"
+        }
+        "do" | "repeat" | "until" => {
+            "a loop is `while (condition) { ... }` or `for (i = 1:n) { ... }`"
         }
         "var" | "let" | "const" | "auto" | "double" | "real" | "bool" | "boolean" => {
             "a variable is declared with its type: `float x = 1;`"

@@ -498,7 +498,8 @@ impl Parser {
         let text: String = self.program.slice(span).chars().take(40).collect();
         let diagnostic =
             Diagnostic::error("not-a-statement", "this value is not used for anything").at(span);
-        let usual = || format!("call it with `{text}()`, assign it, or show it with `print {text};`");
+        let usual =
+            || format!("call it with `{text}()`, assign it, or show it with `print {text};`");
         let help = foreign_word(&text).map_or_else(usual, str::to_string);
         self.report(diagnostic.help(help));
         Ok(self.push_stmt(StmtKind::Error, self.span_from(start)))
