@@ -47,8 +47,9 @@ pub use measures::contour_lines::ContourSection;
 pub use measures::floating::{FloatAnswer, FloatRequest, FlotationOptions, Immersion, WeightItem};
 #[cfg(not(target_family = "wasm"))]
 pub use measures::gradients::{GradientMode, Gradients, WeightedOutput};
-pub use measures::hydrostatics::HydrostaticsOptions as FloatOptions;
+pub use measures::hydrostatics::{HydrostaticsOptions as FloatOptions, WettedPatch};
 pub use measures::surface_fields::PatchAnalysis;
+pub use moldloft_hydro::Attitude;
 pub use moldloft_lang::run::program::ArgumentInText;
 pub use moldloft_lang::{
     NoFiles, OpenFiles, OpenTexts, Param, ReadAs, ReadText, SolveStatus, TextReadError, World,

@@ -8,6 +8,7 @@ use crate::integrals::{HalvedCell, Immersed, Wanted, immersed};
 use crate::trimmed::TrimLoops;
 use moldloft_mesh::Mesh;
 use moldloft_num::{Box3, Real, Surface, Vec3};
+use std::ops::Range;
 use std::sync::Arc;
 
 /// Default relative accuracy of figures.
@@ -45,6 +46,8 @@ pub struct Body<T> {
     rims: Vec<Vec<Vec3<T>>>,
     /// See [`Self::folds`].
     folds: Vec<(usize, Vec3)>,
+    /// Numbers of cells up to the end of each side; cells of panels follow.
+    ends: Vec<usize>,
     size: f64,
     accuracy: f64,
 }
@@ -115,7 +118,8 @@ impl<T: Real> Body<T> {
         accuracy: f64,
     ) -> Option<Self> {
         let limits = fit_limits(size, accuracy);
-        let mut body = Self { cells: Vec::new(), rims, folds: Vec::new(), size, accuracy };
+        let mut body =
+            Self { cells: Vec::new(), rims, folds: Vec::new(), ends: Vec::new(), size, accuracy };
         for (k, side) in sides.iter().enumerate() {
             let cells = cells_of(side.surface, side.loops, side.reversed, limits)?;
             for edge in (0..4).filter(|&edge| side.open_edges[edge]) {
@@ -126,6 +130,7 @@ impl<T: Real> Body<T> {
                 body.folds.extend(fold(&cells).map(|at| (k, at)));
             }
             body.cells.extend(cells.into_iter().map(Arc::new));
+            body.ends.push(body.cells.len());
         }
         body.cells.extend(panels.into_iter().map(|p| Arc::new(PolynomialCell::of_panel(p))));
         Some(body)
@@ -137,14 +142,13 @@ impl<T: Real> Body<T> {
         let at = |v: u32| mesh.positions()[v as usize];
         let panels = mesh.skin_faces().into_iter().map(|f| mesh.faces()[f].map(at));
         let rims = mesh.open_skin_edges().into_iter().map(|(_, e)| e.map(at).to_vec()).collect();
-        let no_surface = Self { cells: Vec::new(), rims, folds: Vec::new(), size, accuracy };
         let cells = panels.map(|p| Arc::new(PolynomialCell::of_panel(p))).collect();
-        Self { cells, ..no_surface }
+        Self { rims, ..Self::of_cells(cells, size, accuracy) }
     }
 
     /// The body of cells, without rims.
     pub(crate) fn of_cells(cells: Vec<Arc<PolynomialCell<T>>>, size: f64, accuracy: f64) -> Self {
-        Self { cells, rims: Vec::new(), folds: Vec::new(), size, accuracy }
+        Self { cells, rims: Vec::new(), folds: Vec::new(), ends: Vec::new(), size, accuracy }
     }
 
     /// True for a body without cells.
@@ -173,6 +177,20 @@ impl<T: Real> Body<T> {
         self.cells.len()
     }
 
+    /// The area of some cells below z = `level`: of a side of [`Self::side_cells`], or of panels.
+    pub fn wetted_area(&self, cells: Range<usize>, level: T) -> T {
+        let accuracy = self.quadrature_accuracy();
+        let origin = [T::zero(); 2];
+        let cells = &self.cells[cells];
+        immersed(cells, level, origin, self.size, accuracy, Wanted::Skin).sums.wetted
+    }
+
+    /// The cells of each side in turn, for a body made of sides; those of panels follow.
+    pub fn side_cells(&self) -> impl Iterator<Item = Range<usize>> + '_ {
+        let starts = std::iter::once(&0).chain(&self.ends);
+        starts.zip(&self.ends).map(|(start, end)| *start..*end)
+    }
+
     pub(crate) fn cells(&self) -> &[Arc<PolynomialCell<T>>] {
         &self.cells
     }
@@ -188,6 +206,7 @@ impl<T: Real> Body<T> {
             cells: self.cells.iter().map(|c| Arc::new(c.mapped(&map, turned))).collect(),
             rims: self.rims.iter().map(|r| r.iter().map(|&p| map(p)).collect()).collect(),
             folds: Vec::new(),
+            ends: self.ends.clone(),
             size: self.size,
             accuracy: self.accuracy,
         }
@@ -213,6 +232,7 @@ impl<T: Real> Body<T> {
             cells: self.cells.iter().map(|c| Arc::new(c.re())).collect(),
             rims: self.rims.iter().map(|r| r.iter().map(|p| p.re()).collect()).collect(),
             folds: self.folds.clone(),
+            ends: self.ends.clone(),
             size: self.size,
             accuracy: self.accuracy,
         }

@@ -10,6 +10,7 @@ use moldloft_model::Graph;
 use moldloft_num::{Adjoints, Rev, Vec3};
 use moldloft_registry::{Border, Scalar, SurfaceRef, Value};
 use std::collections::{HashMap, HashSet};
+use std::ops::Range;
 use std::sync::Arc;
 
 /// The surfaces and panels that bound the body; independent of the scalar.
@@ -249,6 +250,27 @@ impl Skin {
             vertices
         };
         Some(corners.into_iter().map(of_sum).collect())
+    }
+
+    /// The patches of `mesh` that bound a body of [`Self::body`], each with its cells there.
+    pub fn parts<T: Scalar>(
+        &self,
+        mesh: &Mesh<f64>,
+        body: &Body<T>,
+    ) -> Vec<(String, Range<usize>)> {
+        let names = self.sides.iter().map(|side| side.name.to_string());
+        let mut parts: Vec<_> = names.zip(body.side_cells()).collect();
+        let first = parts.last().map_or(0, |(_, cells)| cells.end);
+        let of_face = |k: usize| mesh.topology().patch_of(self.faces[k]);
+        let mut start = 0;
+        for end in 1..=self.faces.len() {
+            if end == self.faces.len() || of_face(end) != of_face(start) {
+                let name = mesh.patches()[of_face(start)].info.name.clone();
+                parts.push((name, first + start..first + end));
+                start = end;
+            }
+        }
+        parts
     }
 
     /// True when a part of the skin is measured by panels.

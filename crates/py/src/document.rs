@@ -12,8 +12,8 @@ use moldloft::budget::Budget;
 use moldloft::diag::Sources;
 use moldloft::document::searches::Searches;
 use moldloft::document::{
-    Adjustable, Document, FloatAnswer, FloatRequest, FlotationOptions, Immersion, ModelFormat,
-    WantedNumber,
+    Adjustable, Attitude, Document, FloatAnswer, FloatRequest, FlotationOptions, Immersion,
+    ModelFormat, WantedNumber,
 };
 use moldloft::export::{SplinePatch, WriteOptions, format_named, spline_patches, stated_length};
 use moldloft::host::FileWorld;
@@ -637,6 +637,19 @@ impl PyDocument {
         let document = self.lock(py);
         let sources = document.sources();
         Ok(found.iter().map(|d| d.to_data(sources).into()).collect())
+    }
+
+    /// Object, tags and wetted area of each patch of the skin.
+    fn wetted_areas(
+        &self,
+        py: Python<'_>,
+        attitude: [f64; 3],
+        accuracy: f64,
+    ) -> PyResult<Vec<(String, Vec<String>, f64)>> {
+        let found = self.long_checked(py, move |d| {
+            d.wetted_areas(Attitude::of(attitude), accuracy).map_err(|e| vec![e])
+        })?;
+        Ok(found.into_iter().map(|w| (w.object, w.tags, w.area)).collect())
     }
 
     /// The volume mesh of the shown solids.

@@ -133,6 +133,11 @@ def add(parser: argparse.ArgumentParser) -> None:
         "--by", metavar="NAME", action="append", default=[], help="differentiate by a parameter"
     )
     parser.add_argument(
+        "--parts",
+        choices=["object", "tag"],
+        help="also the wetted area of each object, or of the objects with each tag",
+    )
+    parser.add_argument(
         "--stiffness",
         action="store_true",
         help="the 6 x 6 stiffness about the centre of gravity; needs --cg and --density",
@@ -205,6 +210,8 @@ def run(options: argparse.Namespace) -> int:
     rows_of = options.table or options.gz or options.sections
     if options.plot and not rows_of:
         raise Error("--plot is of the rows of --table, --gz, --kn or --sections")
+    if options.parts and (rows_of or options.units):
+        raise Error("--parts is of one attitude, in the model's units")
     stiff = options.stiffness or options.kh
     if stiff and (rows_of or options.units or options.cg is None or options.density is None):
         raise Error(
@@ -246,11 +253,21 @@ def run(options: argparse.Namespace) -> int:
             written += flotation.write_kh(options.kh, options.cg)
     _warn([flotation] if rows is None else list(rows))
     matrix = flotation.stiffness(options.cg).tolist() if options.stiffness else None
+    parts = None
+    if options.parts:
+        place = {name: getattr(flotation, name) for name in ("level", "trim", "heel")}
+        parts = model.wetted_areas(
+            **place, sides=options.sides, by=options.parts, accuracy=options.accuracy
+        )
     if options.json:
-        more = {} if matrix is None else {"stiffness": matrix}
+        more: dict[str, Any] = {} if matrix is None else {"stiffness": matrix}
+        more |= {} if parts is None else {"wetted_areas": parts}
         print_json({**_data(flotation), **more} if rows is None else [_data(row) for row in rows])
     elif rows is None:
         print(_one(flotation))
+        if parts is not None:
+            rows_of_parts = [[name, _number(area)] for name, area in parts.items()]
+            print(f"\nwetted area\n{table([options.parts, 'area'], rows_of_parts)}")
         if matrix is not None:
             words = ["surge", "sway", "heave", "roll", "pitch", "yaw"]
             cells = [[w, *map(_number, row)] for w, row in zip(words, matrix, strict=True)]

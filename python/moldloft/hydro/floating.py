@@ -72,6 +72,71 @@ class Floating:
         @property
         def _document(self) -> _core.Document: ...
 
+    def wetted_areas(
+        self,
+        *,
+        level: float = 0.0,
+        trim: float = 0.0,
+        heel: float = 0.0,
+        sides: str = "both",
+        by: str = "object",
+        accuracy: float = 1e-6,
+    ) -> dict[str, float]:
+        """The wetted area of each part of the model, in one attitude.
+
+        The areas are integrals over the surfaces and add up to ``wetted_area`` of
+        :meth:`hydrostatics`, but those by tag: an object counts for each of its tags.
+
+        Parameters
+        ----------
+        level, trim, heel
+            As in :meth:`hydrostatics`; those of its answers are attributes of them.
+        sides
+            ``"both"``, or ``"one"`` side of a model that is mirrored in y = 0.
+        by
+            ``"object"``, or ``"tag"``.
+        accuracy
+            The requested relative error of the whole area, 1e-12 to 0.1.
+
+        Returns
+        -------
+        dict of str to float
+            Areas in the square of the model's unit of length, in the order of declaration.
+
+        Raises
+        ------
+        Error
+            If a word is unknown, or one side heels.
+        ModelError
+            If the model has no surfaces or is not whole; see :attr:`partial`.
+
+        Examples
+        --------
+        >>> import moldloft
+        >>> m = moldloft.loads('''
+        ... AbsPoint a(0, 0, -2); AbsPoint b(4, 0, -2); AbsPoint c(0, 1, -2); AbsPoint d(4, 1, -2);
+        ... AbsPoint e(0, 0, 1); AbsPoint f(4, 0, 1); Line ab(a, b); Line cd(c, d); Line ef(e, f);
+        ... RuledSurf bottom(ab, cd, tags = "flat"); RuledSurf wall(ab, ef);
+        ... ''')
+        >>> m.partial = True
+        >>> m.wetted_areas()
+        {'bottom': 4.0, 'wall': 8.0}
+        >>> m.wetted_areas(by="tag")
+        {'flat': 4.0}
+        """
+        if by not in ("object", "tag"):
+            raise Error(f'`by` is "object" or "tag", not {by!r}')
+        if sides not in ("both", "one"):
+            raise Error(f'`sides` is "both" or "one", not {sides!r}')
+        half = sides == "one" and "y" in self._document.symmetry()
+        if half and heel != 0.0:
+            raise Error("one side of a model does not heel alone")
+        found: dict[str, float] = {}
+        for name, tags, area in self._document.wetted_areas((level, trim, heel), accuracy):
+            for key in tags if by == "tag" else [name]:
+                found[key] = found.get(key, 0.0) + (0.5 * area if half else area)
+        return found
+
     def hydrostatics(
         self,
         *,

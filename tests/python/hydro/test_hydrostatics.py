@@ -331,3 +331,29 @@ def test_a_figure_below_the_requested_accuracy_has_a_remark(barge):
         "volume: relative accuracy 3e-05; requested: 1e-06",
     ]
     assert "relative accuracy 3e-05" in worse._repr_html_()
+
+
+def test_wetted_areas_of_parts_add_up() -> None:
+    # A half box with a plate keel: closed forms upright, and the whole skin when heeled.
+    m = moldloft.loads("""
+Model info(symmetry = "y", units = "m t");
+AbsPoint a(0, 0, -2); AbsPoint b(6, 0, -2); AbsPoint c(0, 1, -2); AbsPoint d(6, 1, -2);
+AbsPoint e(0, 1, 1); AbsPoint f(6, 1, 1); AbsPoint g(0, 0, 1); AbsPoint h(6, 0, 1);
+Line ab(a, b); Line cd(c, d); Line ef(e, f); Line gh(g, h);
+RuledSurf bottom(ab, cd, tags = {"flat", "hull"}); RuledSurf wall(cd, ef, tags = "hull");
+Line ac(a, c); Line ge(g, e); RuledSurf aft(ac, ge); Line bd(b, d); Line hf(h, f);
+RuledSurf fore(bd, hf); RuledSurf deck(gh, ef);
+""")
+    assert m.wetted_areas() == pytest.approx(
+        {"bottom": 12, "wall": 24, "aft": 4, "fore": 4, "deck": 0}, abs=1e-9
+    )
+    assert m.wetted_areas(by="tag") == pytest.approx({"flat": 12, "hull": 36})
+    assert sum(m.wetted_areas(sides="one").values()) == pytest.approx(22)
+    for level, trim, heel in [(0.2, 0.03, 0.0), (0.1, 0.02, 0.3), (-0.4, -0.1, -0.5)]:
+        place = {"level": level, "trim": trim, "heel": heel}
+        whole = m.hydrostatics(**place).wetted_area
+        assert sum(m.wetted_areas(**place).values()) == pytest.approx(whole, rel=1e-6)
+    with pytest.raises(moldloft.errors.Error, match="heel alone"):
+        m.wetted_areas(heel=0.1, sides="one")
+    with pytest.raises(moldloft.errors.Error, match="object"):
+        m.wetted_areas(by="colour")

@@ -325,7 +325,8 @@ subroutine section(float x, float y) {
     AbsPoint p(x, y, 0); AbsPoint q(x, 0.5*y, 0); AbsPoint r(x, 0, 0);
     BCurve c({p, q, r}, degree = 2);
 }
-section m1(0, 0.4); section m2(3.2, 1.3); section m3(6.5, 1.9); section m4(10, 1.7); section m5(12, 1.2);
+section m1(0, 0.4); section m2(3.2, 1.3); section m3(6.5, 1.9); section m4(10, 1.7);
+section m5(12, 1.2);
 CLoftSurf hull({m1.c, m2.c, m3.c, m4.c, m5.c}, visible = 0);
 EdgeSnake centre(2, hull);
 AbsRing c0(centre, 0); AbsRing c1(centre, 1);

@@ -3,7 +3,7 @@
 use crate::Document;
 use crate::measures::bodied::Bodied;
 use moldloft_diag::{Diagnostic, Severity};
-use moldloft_hydro::{Hydrostatics, Symmetry, USUAL_ACCURACY, hydrostatics};
+use moldloft_hydro::{Attitude, Hydrostatics, Symmetry, USUAL_ACCURACY, hydrostatics};
 use moldloft_lang::run::whole::{not_finite, open_below_water};
 use moldloft_mesh::{InnerSkin, Mesh, inner_skins};
 use moldloft_num::Vec3;
@@ -31,6 +31,17 @@ impl HydrostaticsOptions {
     fn symmetry(&self) -> Symmetry {
         if self.mirrored { Symmetry::MirroredTwice } else { Symmetry::None }
     }
+}
+
+/// The wetted area of a patch of the skin.
+#[derive(Clone, Debug, PartialEq)]
+pub struct WettedPatch {
+    /// The object that it belongs to.
+    pub object: String,
+    /// The tags of the patch.
+    pub tags: Vec<String>,
+    /// Area below the water.
+    pub area: f64,
 }
 
 impl Document {
@@ -69,6 +80,45 @@ impl Document {
         }
         fault.severity = Severity::Warning;
         Ok(Some(fault))
+    }
+
+    /// The wetted area of each patch of the skin in an attitude, with the patch's tags; images of a
+    /// symmetric model are included.
+    ///
+    /// # Errors
+    /// As [`Document::hydrostatics`], but for open edges.
+    pub fn wetted_areas(
+        &mut self,
+        attitude: Attitude<f64>,
+        accuracy: f64,
+    ) -> Result<Vec<WettedPatch>, Diagnostic> {
+        let bodied = self.bodied(accuracy)?;
+        let panelled = self.panelled()?;
+        let symmetry = self.symmetry();
+        let signs = |axis: char| if symmetry.contains(axis) { vec![1.0, -1.0] } else { vec![1.0] };
+        let parts = bodied.skin.parts(&panelled.mesh, &bodied.body);
+        let mut areas = vec![0.0; parts.len()];
+        // The image of a patch has the attitude with the opposite turn.
+        for lengthwise in signs('x') {
+            for across in signs('y') {
+                let Attitude { level, trim, heel } = attitude;
+                let turned = Attitude { level, trim: lengthwise * trim, heel: across * heel };
+                let body = turned.turned(&bodied.body);
+                for (area, (_, cells)) in areas.iter_mut().zip(&parts) {
+                    *area += body.wetted_area(cells.clone(), level);
+                }
+            }
+        }
+        let tags = |name: &str| {
+            let patch = panelled.mesh.patches().iter().find(|patch| patch.info.name == name);
+            patch.map_or_else(Vec::new, |patch| patch.info.tags.clone())
+        };
+        let made = |((name, _), area): ((String, _), f64)| WettedPatch {
+            tags: tags(&name),
+            object: self.owner(&name).unwrap_or(&name).to_string(),
+            area,
+        };
+        Ok(parts.into_iter().zip(areas).map(made).collect())
     }
 
     /// The skin of all shown surfaces and bodies, cached until the model changes.
