@@ -112,7 +112,7 @@ export function parametersPanel(host: HTMLElement, act: Actions): void {
         const v = stepped(Math.min(high, Math.max(low, value)), low, high, p.whole)
         slider.value = String(v)
         field.value = p.whole ? String(v) : shown(v, 7)
-        slider.setAttribute('aria-valuetext', `${field.value} ${model.unit}`)
+        slider.setAttribute('aria-valuetext', field.value)
         if (entry.wanted === null) entry.from = entry.p.value
         entry.wanted = v
         act.set(p.name, v)
@@ -181,7 +181,7 @@ export function parametersPanel(host: HTMLElement, act: Actions): void {
   function show({ p, slider, field }: { p: ParamFact; slider: HTMLInputElement; field: HTMLInputElement }): void {
     if (!dragging(slider)) slider.value = String(p.value)
     if (document.activeElement !== field) field.value = text(p)
-    slider.setAttribute('aria-valuetext', `${text(p)} ${model.unit}`.trim())
+    slider.setAttribute('aria-valuetext', text(p))
   }
 
   /** Values when the page was opened, for reset. */
