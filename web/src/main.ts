@@ -24,6 +24,7 @@ import { GivenNumbers } from './numbers'
 import { Orientation } from './orientation'
 import { help, palette } from './palette'
 import { inspectorPanel, messagesPanel, parametersPanel, strip } from './panels'
+import { triangles } from './probe'
 import type { ValueFact } from './protocol'
 import { Rooms } from './rooms'
 import { Saving } from './saving'
@@ -56,6 +57,7 @@ const view = new View(shell.view)
 const canvas = view.canvas
 canvas.tabIndex = 0
 canvas.setAttribute('role', 'application')
+Object.assign(view.ground, stored('ground', { water: true, grid: false }))
 canvas.setAttribute('aria-label', 'model')
 canvas.setAttribute('aria-describedby', 'selection')
 const selection = h('span', { class: 'sr', id: 'selection' })
@@ -457,13 +459,16 @@ function take(frame: Frame): void {
 const floating = new Newest<void>(async () => {
   const ask = async () => (await link.ask('evaluate', { expressions: [IMMERSED] })).head.values[0].value
   const immersed = view.mirrored.includes('y') ? await ask().catch(() => null) : null
-  model.floats = floats(view.mirrored, immersed)
+  afloat(floats(view.mirrored, immersed))
   fitTabs()
 })
-let floated = 0
-function askFloating(): void {
-  clearTimeout(floated)
-  if (!link.still) floated = window.setTimeout(() => floating.push(undefined), 150)
+/** The model floats, or does not: the picture has its water. */
+function afloat(on: boolean): void {
+  model.floats = on
+  if (view.afloat === on) return
+  view.afloat = on
+  view.settle()
+  buildToolbar(app)
 }
 
 // ValueFact numbers follow the scene: at once while they are quick, else now and then, slow ones when the hand rests:
@@ -585,7 +590,7 @@ async function begin(hello: any): Promise<void> {
     if (link.local) await link.ask('open')
     if (hello.watched) {
       const immersed = hello.watched.find((w: ValueFact) => w.expression === IMMERSED)?.value
-      model.floats = floats(view.mirrored, immersed)
+      afloat(floats(view.mirrored, immersed))
       model.watched = usualOf(hello.watched, model.floats)
       changed('watched')
       fitTabs()
@@ -672,6 +677,8 @@ Object.assign(window, {
     },
   },
 })
+    ground: () => ({ ...view.ground.shown, bounds: [...view.box.min.toArray(), ...view.box.max.toArray()] }),
+    triangles: () => triangles(view),
 
 if (inCell) document.body.dataset.host = 'cell'
 host?.begin({ editor: () => editor, say, cursor: (offset) => editor.onCursor(offset) })
