@@ -47,6 +47,8 @@ const { say, warn } = shell
 /** The notebook's cell that the page is inside of, if any: it follows the text. */
 let cell: Cell | null = null
 let selected = ''
+/** True while a hand holds a slider or a number. */
+let held = false
 let fitted = false
 let instance = ''
 const contours = stored('contours', true)
@@ -55,9 +57,9 @@ const contours = stored('contours', true)
 
 const view = new View(shell.view)
 const canvas = view.canvas
+Object.assign(view.ground, stored('ground', { water: true, grid: false }))
 canvas.tabIndex = 0
 canvas.setAttribute('role', 'application')
-Object.assign(view.ground, stored('ground', { water: true, grid: false }))
 canvas.setAttribute('aria-label', 'model')
 canvas.setAttribute('aria-describedby', 'selection')
 const selection = h('span', { class: 'sr', id: 'selection' })
@@ -125,7 +127,10 @@ const actions: App['actions'] = {
     if (!hidden.delete(name)) hidden.add(name)
     hide()
   },
-  ghost: (on) => view.ghost(on),
+  ghost: (on) => {
+    held = on
+    view.ghost(on)
+  },
   fair: link.local ? null : (name) => void fair(name),
   isolate(name) {
     hidden.clear()
@@ -427,6 +432,7 @@ function take(frame: Frame): void {
   ]
   if (head.unit !== undefined) model.unit = head.unit
   if (head.program !== undefined) model.program = head.program
+  if (head.mirror !== undefined) model.mirror = head.mirror
   const scene = view.take(frame)
   for (const [key, name, topic] of facts) {
     if (head[key] === undefined) continue
@@ -449,10 +455,26 @@ function take(frame: Frame): void {
   if (head.rev !== undefined && head.rev !== model.rev) {
     model.rev = head.rev
     changed('rev')
-    askFloating()
+    if (!link.still) askFloating()
     void watchUsual()
   }
   document.body.dataset.state = 'alive'
+}
+
+/** How long a hand rests before numbers are computed, ms. */
+const REST = 150
+let lastMove = 0
+addEventListener('pointermove', () => (lastMove = performance.now()), true)
+
+/** What waits until nothing has come, and no hand has moved what it holds, for a moment. */
+function atRest(run: () => void): () => void {
+  let timer = 0
+  const moving = () => (held || hands.busy) && performance.now() - lastMove < REST
+  const wait = () => {
+    clearTimeout(timer)
+    timer = window.setTimeout(() => (moving() ? wait() : run()), REST)
+  }
+  return wait
 }
 
 /** Asks whether the model floats. */
@@ -470,24 +492,20 @@ function afloat(on: boolean): void {
   view.settle()
   buildToolbar(app)
 }
+const askFloating = atRest(() => floating.push(undefined))
 
-// ValueFact numbers follow the scene: at once while they are quick, else now and then, slow ones when the hand rests:
-// a slider that moves does not wait for them.
+// Watched numbers follow the scene: at once while they are quick and no hand holds anything, else when the hand rests. A
+// move ends what is computed of them.
 let took = 0
-let resting = 0
 const measuring = new Newest<void>(async () => {
   const from = performance.now()
   await link.ask('measure').catch(() => undefined)
   took = performance.now() - from
 })
+const measureLater = atRest(() => measuring.push(undefined))
 function measure(): void {
-  if (took < 4) return measuring.push(undefined)
-  if (took < 60 && resting) return
-  clearTimeout(resting)
-  resting = window.setTimeout(() => {
-    resting = 0
-    measuring.push(undefined)
-  }, 150)
+  if (took < 4 && !held && !hands.busy) measuring.push(undefined)
+  else measureLater()
 }
 
 link.onFrame = take
@@ -546,7 +564,7 @@ async function watchUsual(): Promise<void> {
   watching = true
   floating.push(undefined)
   await floating.settled()
-  const expressions = kept ?? usualNumbers(model.floats)
+  const expressions = kept ?? usualNumbers(model.floats, model.objects)
   await link.ask('watch', { expressions }).catch(() => (watching = false))
 }
 
@@ -659,6 +677,8 @@ Object.assign(window, {
         .flatMap(([, i]) => Array.from(i.position)),
     text: (file = '') => files.of(file)?.text,
     over: (name: string) => view.drawnOver(name),
+    ground: () => ({ ...view.ground.shown, bounds: [...view.box.min.toArray(), ...view.box.max.toArray()] }),
+    triangles: () => triangles(view),
     get board() {
       return rooms.loaded.board
     },
@@ -677,8 +697,6 @@ Object.assign(window, {
     },
   },
 })
-    ground: () => ({ ...view.ground.shown, bounds: [...view.box.min.toArray(), ...view.box.max.toArray()] }),
-    triangles: () => triangles(view),
 
 if (inCell) document.body.dataset.host = 'cell'
 host?.begin({ editor: () => editor, say, cursor: (offset) => editor.onCursor(offset) })
