@@ -3,7 +3,7 @@
 import './board.css'
 import { BoardBar } from './board_bar'
 import { BoardBox } from './board_box'
-import { dimensioned, duplicated, labels } from './board_edit'
+import { dimensioned, duplicated, labels, named } from './board_edit'
 import { type Aim, type Check, type Drawn, letter, type Mark, Page, Painter, type Place } from './board_paint'
 import { BoardPointer, REACH } from './board_pointer'
 import { type Shape, shapes } from './board_shapes'
@@ -38,6 +38,7 @@ const NOTHING = {
   missing: {},
   numbers: {},
   faces: 0,
+  asked: null,
   section: null,
 } as unknown as Drawn
 
@@ -54,11 +55,16 @@ export class Board {
   })
   private readonly page = new Page()
   private readonly painter = new Painter(this.svg, this.page)
-  private readonly underlay = new Underlay(this.page, () => (this.buttons(), this.paint()))
+  private readonly underlay = new Underlay(this.page, {
+    changed: () => (this.buttons(), this.paint()),
+    say: (words) => this.say(words),
+    axes: (angles) => void this.act([{ do: 'axes', axes: angles.join(' ') }]),
+    drawn: () => this.drawn,
+  })
   private readonly solid = new BoardSolid((n) => void this.make(n))
   /** What was chosen when the buttons were built. */
   private buttoned = ''
-  private readonly bar = new BoardBar(this, () => this.underlay.controls(this.say))
+  private readonly bar = new BoardBar(this, () => this.underlay.controls())
   private readonly pointer: BoardPointer
   private readonly line = h('input', {
     type: 'text',
@@ -88,8 +94,8 @@ export class Board {
     const found = await this.ask('board_pointer', request)
     if (!this.pointer.taken) this.aim(found as Aim)
   })
-  private readonly dragging = new Newest<{ point: number; at: Place }>(async (move) => {
-    const found = await this.ask('board_drag', { move })
+  private readonly dragging = new Newest<Facts[]>(async (moves) => {
+    const found = await this.ask('board_drag', { moves })
     if (this.pointer.moving) this.take(found as Drawn)
   })
   private readonly trying = new Newest<string>(async (trial) => {
@@ -130,6 +136,7 @@ export class Board {
       { class: 'sr', id: 'board-help' },
       'D draws, V selects. X Y Z H P F O set and lock a type. Tab goes to the next missing dimension. N and Shift+N go through points and lines. Delete removes, Ctrl+D duplicates. The command line takes every sketch command.',
     )
+    this.svg.append(this.underlay.handles)
     this.element.append(
       this.bar.element,
       // The drawing lies over the picture of the solid: what is drawn there is seen, and is what is meant.
@@ -141,6 +148,7 @@ export class Board {
         this.svg as unknown as HTMLElement,
         this.bar.issues,
         this.bar.start,
+        this.bar.asked,
         this.box.element,
       ),
       this.line,
@@ -164,6 +172,7 @@ export class Board {
   show(on: boolean): void {
     this.element.hidden = !on
     if (!on) return
+    void this.underlay.load()
     this.refresh()
     this.svg.focus({ preventScroll: true })
   }
@@ -183,7 +192,7 @@ export class Board {
   }
 
   async settled(): Promise<void> {
-    await this.queue
+    for (let last = null; last !== this.queue; ) await (last = this.queue)
     await this.pointing.settled()
     while (this.timer) await new Promise((r) => setTimeout(r, 5))
     await this.resting.settled()
@@ -216,7 +225,7 @@ export class Board {
     if (!changes.length) return true
     await this.editor.synced()
     const answer = await this.ask('board_edit', { changes })
-    this.editor.apply(answer.edits, answer.version)
+    this.editor.apply(answer.edits, answer.version, named(changes))
     this.text = this.editor.text
     this.say('')
     // The page stays where it is under a hand.
@@ -260,7 +269,7 @@ export class Board {
     const buttoned = [...this.chosen].join()
     if (buttoned !== this.buttoned) this.buttons()
     this.buttoned = buttoned
-    this.underlay.draw()
+    this.underlay.draw(this.tool === 'select')
     this.painter.draw(this.drawn, {
       chosen: this.chosen,
       checks: this.checks,
@@ -302,6 +311,7 @@ export class Board {
     this.endChain()
     this.svg.dataset.tool = tool
     this.buttons()
+    this.paint()
     this.focus()
   }
 
@@ -342,15 +352,32 @@ export class Board {
     })
   }
 
-  /** A point under the pointer that moves it. */
-  drag(point: number, at: Place): void {
-    this.dragging.push({ point, at: this.rounded(this.page.from(at)) })
+  /** The points of the choice, ends of lines with them, and where they are. */
+  held(): Map<number, Place> {
+    const lines = new Set(labels(this.chosen, 'l'))
+    const ends = this.drawn.lines.filter((l) => lines.has(l[0])).flatMap((l) => [l[1], l[2]])
+    const all = new Set([...labels(this.chosen, 'p'), ...ends])
+    return new Map(this.drawn.points.filter((p) => all.has(p[0])).map((p) => [p[0], [p[1], p[2]]]))
   }
 
-  /** A gesture that the system has ended; a point that was moved is where it was. */
+  private moves(places: Map<number, Place>): Facts[] {
+    return [...places].map(([point, at]) => ({ point, at: this.rounded(at) }))
+  }
+
+  /** Points under a pointer that moves them. */
+  drag(places: Map<number, Place>): void {
+    this.dragging.push(this.moves(places))
+  }
+
+  /** A gesture that was given up; points that were moved are where they were. */
   dropped(moving: boolean): void {
     if (moving) this.text = null
     this.refresh()
+  }
+
+  /** A click along an axis of the picture underneath; true when these are being set. */
+  marked(at: Place): boolean {
+    return this.underlay.click(this.page.from(at))
   }
 
   axes(angles: number[]): void {
@@ -441,15 +468,17 @@ export class Board {
     this.aim(this.aimed)
   }
 
-  drop(point: number, at: Place): void {
-    const place = this.rounded(this.page.from(at))
-    const near = [...this.painter.places].find(
-      ([id, p]) => id !== point && Math.hypot(p[0] - at[0], p[1] - at[1]) <= REACH,
-    )?.[0]
+  /** Points that were moved; a single one that is let go on another becomes one with it. */
+  drop(places: Map<number, Place>, at: Place): void {
+    const [point] = places.keys()
+    const near =
+      places.size === 1 &&
+      [...this.painter.places].find(([id, p]) => id !== point && Math.hypot(p[0] - at[0], p[1] - at[1]) <= REACH)?.[0]
+    const moves = this.moves(places).map((m) => ({ do: 'move', ...m }))
     void this.later(async () => {
       await this.dragging.settled()
       try {
-        await this.carryOut([near ? { do: 'run', command: `WELD ${near} ${point}` } : { do: 'move', point, at: place }])
+        await this.carryOut(near ? [{ do: 'run', command: `WELD ${near} ${point}` }] : moves)
         this.say(near ? `points ${near} and ${point} are one` : '')
       } catch (error) {
         this.text = null
@@ -630,12 +659,13 @@ export class Board {
       this.endChain()
       void this.later(async () => {
         this.editor.steps.go(key === 'y' || e.shiftKey ? -1 : 1)
-        setTimeout(() => this.refresh(), 0)
+        this.refresh()
       })
       return
     }
     if (e.altKey || /^F\d/.test(e.key)) return
     const lines = labels(this.chosen, 'l')
+    if (this.underlay.choose(key.toUpperCase())) return done()
     if (key in TYPES) {
       const type = TYPES[key]
       const own = this.drawn.section && type.length > 1 ? 'F' : letter(type, null)
@@ -653,6 +683,7 @@ export class Board {
     if (step) this.nudge(step.map((x) => (x * (e.shiftKey ? 10 : 1)) / this.page.scale) as Place)
     else if (key === 'escape') {
       if (this.chain.length) this.endChain()
+      else if (this.underlay.end()) this.say('')
       else this.chosen.clear()
       this.paint()
     } else if (key === 'tab') {
@@ -668,6 +699,7 @@ export class Board {
     else if (key === 'delete' || key === 'backspace') this.remove()
     else if (key === 'enter') {
       if (this.chain.length) this.endChain()
+      else if (this.drawn.asked) void this.act([{ do: 'run', command: 'ACCEPT', last: true }])
       else if (!this.drawn.next.length && !this.drawn.section && !this.drawn.faces && this.last?.exact) void this.make()
     } else if (e.key.length > 1) return
     done()

@@ -57,6 +57,8 @@ export class BoardBar {
   readonly element = h('div', { class: 'board-bar', role: 'toolbar', 'aria-label': 'drawing' })
   readonly issues = h('div', { class: 'board-issues', role: 'log', 'aria-label': 'doubts and contradictions' })
   readonly start = h('div', { class: 'board-start' })
+  /** The face that is traced, with its answers. */
+  readonly asked = h('div', { class: 'board-asked', role: 'group', 'aria-label': 'face to judge', hidden: true })
 
   constructor(
     private readonly board: BarActs,
@@ -79,6 +81,23 @@ export class BoardBar {
       h('p', { class: 'quiet' }, 'Only the directions of lines count; dimensions come after.'),
       begin('Pictorial: a solid with its depth', `SKETCH PART\nAXES ${PRESETS[0][0]}`),
       ...['XZ', 'XY', 'YZ'].map((plane) => begin(`Cross section in ${plane.toLowerCase()}`, `SKETCH PART 2D ${plane}`)),
+    )
+  }
+
+  private ask(): void {
+    const { board } = this
+    const { asked } = board.drawn
+    this.asked.hidden = asked === null
+    if (!asked) return
+    const answer = (words: string, key: string, command: string, about: string) =>
+      button(words, key, () => void board.act([{ do: 'run', command, last: true }]).then(() => board.focus()), {
+        title: about,
+      })
+    this.asked.replaceChildren(
+      h('span', { role: 'status' }, `Face ${asked.map((loop) => loop.join(' ')).join(', hole ')}?`),
+      answer('Accept', 'Enter', 'ACCEPT', 'A face of the solid'),
+      answer('Reverse', '', 'REVERSE', 'The other side is outside'),
+      answer('Reject', '', 'REJECT', 'No face: the solid is open or hollow there'),
     )
   }
 
@@ -105,10 +124,19 @@ export class BoardBar {
         class: board.tool === name ? 'on' : '',
       })
     const confirm = board.toConfirm()
-    const complete = d.lines.length > 2 && d.next.length === 0 && !d.faces
+    this.ask()
+    const complete = d.lines.length > 2 && d.next.length === 0 && !d.faces && !d.asked
     const action =
       !d.section && complete && board.last?.exact && board.last.vertices
         ? button('Make the solid', 'Enter', () => void board.make(), { class: 'primary' })
+        : ''
+    const trace =
+      !d.section && complete && board.last?.exact
+        ? button(
+            'Trace the faces',
+            '',
+            () => void board.act([{ do: 'run', command: 'GENERATE FACES ASK', last: true }]),
+          )
         : ''
     const shape = (one: Shape) =>
       button(one.words, one.key.toUpperCase(), () => board.askShape(one), {
@@ -129,6 +157,7 @@ export class BoardBar {
       h('span', { class: 'grow' }),
       ...this.underlay(),
       ...(d.lines.length > 1 ? shapes(d, board.chosen) : []).map(shape),
+      trace,
       action,
       button('Fit', '0', () => board.fit()),
     )

@@ -1,6 +1,7 @@
 // Commands for what is chosen on the drawing board.
 
 import { type Drawn, letter, type Mark } from './board_paint'
+import type { Facts } from './frame'
 
 /** A number, with or without a unit; the rest is an expression, in quotes. */
 const PLAIN = /^[-+]?(\d+\.?\d*|\.\d+)(e[-+]?\d+)?\s*[a-z]*$/i
@@ -49,4 +50,19 @@ export function duplicated(
     made.push(`l${line}`)
   }
   return { commands, chosen: made }
+}
+
+/** What a step of the history is called: the command, or what is changed where it is written. */
+export function named(changes: Facts[]): string {
+  const [first] = changes
+  const more = changes.length > 1 ? ` and ${changes.length - 1} more` : ''
+  const words: Record<string, () => string> = {
+    run: () => String(first.command).split('\n')[0],
+    move: () => `Move point ${first.point}`,
+    type: () => `Type of line ${first.lines}: ${first.type}`,
+    value: () => `${first.name} = ${first.value}`,
+    axes: () => `Axes ${first.axes}`,
+  }
+  const name = words[first.do]?.() ?? 'Edit'
+  return `${name.length > 60 ? `${name.slice(0, 59)}…` : name}${more}`
 }

@@ -23,6 +23,8 @@ export interface Drawn {
   next: Mark[]
   missing: Record<string, number>
   faces: number
+  /** The loops of the face about which the text asks, the outer one first. */
+  asked: number[][] | null
   numbers: Record<string, number | null>
 }
 
@@ -176,6 +178,7 @@ export class Painter {
           : []
       }),
     )
+    if (d.asked) this.faces.append(...this.traced(d.asked))
     this.lines.replaceChildren(
       ...(d.lines ?? []).flatMap(([id, p, q, type, source]) => {
         const [a, b] = [this.places.get(p), this.places.get(q)]
@@ -183,6 +186,8 @@ export class Painter {
         const proposal = state.proposed.get(id)
         const sure = type === '' ? 'unknown' : doubted.has(id) && source !== 'user' ? 'guessed' : 'sure'
         const kind = type || 'none'
+        // A line is in a plane with both its ends.
+        const plane = lit.get(p) === lit.get(q) ? (lit.get(p) ?? '') : ''
         const name = `line ${id}, ${p} to ${q}, ${words[type] ?? type}${source === 'user' ? ', locked' : sure === 'guessed' ? ', to confirm' : ''}${proposal && !type ? `, proposed ${letter(proposal, d.section)}` : ''}`
         const m = middle(a, b)
         const label = type ? letter(type, d.section) : proposal ? `${letter(proposal, d.section)}?` : '?'
@@ -190,11 +195,12 @@ export class Painter {
           s(
             'g',
             {
-              class: `stroke ${sure} type-${kind} ${wrong.has(id) ? 'wrong' : ''} ${state.chosen.has(`l${id}`) ? 'chosen' : ''}`,
+              class: `stroke ${sure} type-${kind} ${wrong.has(id) ? 'wrong' : ''} ${state.chosen.has(`l${id}`) ? 'chosen' : ''} ${plane}`,
               role: 'listitem',
               'aria-label': name,
               'data-line': id,
             },
+            ...(plane ? [segment(a, b, { class: `halo ${plane}` })] : []),
             ...(wrong.has(id) ? [segment(a, b, { class: 'halo' })] : []),
             segment(a, b, { class: 'ink' }),
             s('rect', {
@@ -232,6 +238,26 @@ export class Painter {
       ],
     )
     this.axes(d)
+  }
+
+  /** A face that is traced: its area, and the direction in which its loops are run through. */
+  private traced(loops: number[][]): SVGElement[] {
+    const ways = loops.map((loop) => loop.map((p) => this.places.get(p)))
+    if (!ways.flat().every(Boolean)) return []
+    const word = (p: Place) => p.map((x) => x.toFixed(1)).join(' ')
+    const area = ways.map((way) => `M${(way as Place[]).map(word).join('L')}Z`).join('')
+    const arrows = (ways as Place[][]).flatMap((way) =>
+      way.map((a, k) => {
+        const b = way[(k + 1) % way.length]
+        const degrees = (Math.atan2(b[1] - a[1], b[0] - a[0]) * 180) / Math.PI
+        return s('path', {
+          class: 'run',
+          d: 'M-6 -5L6 0L-6 5Z',
+          transform: `translate(${word(middle(a, middle(a, b)))}) rotate(${degrees.toFixed(1)})`,
+        })
+      }),
+    )
+    return [s('path', { class: 'asked', d: area, 'fill-rule': 'evenodd' }), ...arrows]
   }
 
   private mark(m: Mark, kind: string, open: string): SVGElement {

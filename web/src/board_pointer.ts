@@ -3,10 +3,11 @@
 import type { Board } from './board'
 import type { Mark, Page, Painter, Place } from './board_paint'
 import type { BoardSolid } from './board_solid'
+import { Contacts } from './contacts'
 
-/** Pixels: what a pointer reaches, what is a click, and how long a touch is no palm after a pen, ms. */
+/** Pixels: what a pointer reaches, and what is a click. */
 export const REACH = 11
-const [CLICK, PALM] = [5, 500]
+const CLICK = 5
 
 type Kind = 'draw' | 'move' | 'pan' | 'turn' | 'axis' | 'none'
 
@@ -16,8 +17,8 @@ interface Press {
   from: Place
   kind: Kind
   moved: boolean
-  /** The point that moves. */
-  point: number
+  /** The points that move, and their places on the page before. */
+  points: Map<number, Place>
   axis: string
   angles: number[]
 }
@@ -38,6 +39,8 @@ export type PointerActs = Pick<
   | 'point'
   | 'click'
   | 'stroke'
+  | 'held'
+  | 'marked'
   | 'drag'
   | 'drop'
   | 'dropped'
@@ -51,8 +54,7 @@ export class BoardPointer {
   /** Points that were hovered, the last ones last: their extensions are snapped to. */
   woken: number[] = []
   private pressed: Press | null = null
-  private readonly touches = new Map<number, Place>()
-  private pen = 0
+  private readonly contacts = new Contacts()
 
   constructor(
     private readonly svg: SVGElement,
@@ -77,7 +79,7 @@ export class BoardPointer {
     })
   }
 
-  /** True while a point is moved. */
+  /** True while points are moved. */
   get moving(): boolean {
     return this.pressed?.kind === 'move'
   }
@@ -102,20 +104,15 @@ export class BoardPointer {
     if (board.drawn.object === null) return
     ;(this.svg as unknown as HTMLElement).focus({ preventScroll: true })
     const at = this.at(e)
-    if (e.pointerType === 'pen') this.pen = performance.now()
-    if (e.pointerType === 'touch') {
-      // A palm comes with the pen, and is larger than a finger.
-      if (this.pen && (performance.now() - this.pen < PALM || Math.max(e.width, e.height) > 60)) return
-      this.touches.set(e.pointerId, at)
-      if (this.touches.size === 2) {
-        this.pressed = null
-        return
-      }
-    }
+    this.arrives(e)
+    const use = this.contacts.down(e, at)
+    if (use === 'palm') return
+    if (use === 'pinch') return this.stop()
     const target = e.target as Element
     this.svg.setPointerCapture(e.pointerId)
     const press = (kind: Kind, more: Partial<Press> = {}) => {
-      this.pressed = { id: e.pointerId, at, from: at, kind, moved: false, point: 0, axis: '', angles: [], ...more }
+      const points = new Map<number, Place>()
+      this.pressed = { id: e.pointerId, at, from: at, kind, moved: false, points, axis: '', angles: [], ...more }
     }
     const mark = target.closest('[data-mark]')?.getAttribute('data-mark')
     const axis = target.closest('[data-axis]')?.getAttribute('data-axis')
@@ -123,7 +120,8 @@ export class BoardPointer {
       press('none')
       return board.endChain()
     }
-    if (e.button !== 0 || (e.pointerType === 'touch' && this.pen)) press('pan')
+    if (e.button !== 0 || use === 'pan') press('pan')
+    else if (board.marked(at)) press('none')
     else if (axis) press('axis', { axis, angles: [...board.drawn.angles] })
     else if (mark && !board.chaining) {
       press('none')
@@ -134,20 +132,37 @@ export class BoardPointer {
       const key = hit.point ? `p${hit.point}` : hit.line ? `l${hit.line}` : ''
       if (!e.shiftKey && !board.chosen.has(key)) board.chosen.clear()
       if (key) board.chosen.add(key)
-      press(hit.point ? 'move' : key ? 'none' : this.solid.has(e) ? 'turn' : 'pan', { point: hit.point ?? 0 })
+      press(key ? 'move' : this.solid.has(e) ? 'turn' : 'pan', { points: key ? board.held() : new Map() })
       board.paint()
     }
   }
 
+  /** A pen ends what fingers have begun. */
+  private arrives(e: PointerEvent): void {
+    if (this.contacts.arrives(e)) this.stop()
+  }
+
+  /** Gives up what is under way. */
+  private stop(): void {
+    const { pressed } = this
+    this.pressed = null
+    if (pressed) this.board.dropped(pressed.kind === 'move')
+  }
+
   private move(e: PointerEvent): void {
-    const { board, pressed } = this
+    const { board } = this
     const at = this.at(e)
-    if (e.pointerType === 'touch' && this.touches.has(e.pointerId)) {
-      if (this.touches.size === 2) return this.pinch(e.pointerId, at)
-      this.touches.set(e.pointerId, at)
+    this.arrives(e)
+    if (this.contacts.ignored(e)) return
+    const pinch = this.contacts.pinch(e, at)
+    if (pinch) {
+      this.page.zoom(pinch.factor, pinch.middle)
+      this.page.pan(...pinch.by)
+      return board.paint()
     }
-    if (e.pointerType === 'pen') this.pen = performance.now()
+    const { pressed } = this
     if (pressed) {
+      if (pressed.id !== e.pointerId) return
       const [dx, dy] = [at[0] - pressed.at[0], at[1] - pressed.at[1]]
       pressed.moved ||= Math.hypot(at[0] - pressed.from[0], at[1] - pressed.from[1]) > CLICK
       pressed.at = at
@@ -157,12 +172,21 @@ export class BoardPointer {
         return board.paint()
       }
       if (pressed.kind === 'turn') return this.solid.turn(dx, dy)
-      if (pressed.kind === 'move') return board.drag(pressed.point, at)
+      if (pressed.kind === 'move') return board.drag(this.moved(pressed))
       if (pressed.kind === 'axis') return board.turnAxis(pressed.axis, pressed.angles, at)
       if (pressed.kind === 'none') return
-    } else this.hover(e, at)
+    } else if (e.pointerType === 'touch') return
+    else this.hover(e, at)
     if (board.tool !== 'draw' || board.drawn.object === null) return
     board.point(at, pressed?.kind === 'draw' ? this.page.from(pressed.from) : null, e.shiftKey)
+  }
+
+  /** Places on the page of the points that are moved: a single point is at the pointer. */
+  private moved({ points, from, at }: Press): Map<number, Place> {
+    const [now, then] = [this.page.from(at), this.page.from(from)]
+    const single = points.size === 1
+    const by = ([u, v]: Place): Place => (single ? now : [u + now[0] - then[0], v + now[1] - then[1]])
+    return new Map([...points].map(([point, place]) => [point, by(place)]))
   }
 
   private hover(e: PointerEvent, at: Place): void {
@@ -180,13 +204,13 @@ export class BoardPointer {
   }
 
   private up(e: PointerEvent): void {
-    this.touches.delete(e.pointerId)
+    this.contacts.up(e)
     const { board, pressed } = this
     if (!pressed || pressed.id !== e.pointerId) return
     this.pressed = null
     const at = this.at(e)
     if (pressed.kind === 'axis' && pressed.moved) board.axes(pressed.angles)
-    if (pressed.kind === 'move' && pressed.moved) board.drop(pressed.point, at)
+    if (pressed.kind === 'move' && pressed.moved) board.drop(this.moved({ ...pressed, at }), at)
     if (pressed.kind !== 'draw') return
     const free = e.shiftKey
     // A drawing during the gesture may scroll the page.
@@ -195,19 +219,7 @@ export class BoardPointer {
   }
 
   private cancel(e: PointerEvent): void {
-    this.touches.delete(e.pointerId)
-    const { moving } = this
-    this.pressed = null
-    this.board.dropped(moving)
-  }
-
-  private pinch(id: number, now: Place): void {
-    const before = this.touches.get(id)!
-    const other = [...this.touches].find(([k]) => k !== id)![1]
-    const far = (a: Place) => Math.max(10, Math.hypot(a[0] - other[0], a[1] - other[1]))
-    this.page.zoom(far(now) / far(before), [(now[0] + other[0]) / 2, (now[1] + other[1]) / 2])
-    this.page.pan((now[0] - before[0]) / 2, (now[1] - before[1]) / 2)
-    this.touches.set(id, now)
-    this.board.paint()
+    this.contacts.up(e)
+    if (this.pressed?.id === e.pointerId) this.stop()
   }
 }

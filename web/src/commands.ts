@@ -2,6 +2,7 @@
 
 import type { App } from './app'
 import type { Standard } from './camera'
+import { store } from './dom'
 import { fileName } from './editor'
 import { chooseLaid } from './files'
 import { type Command, help } from './palette'
@@ -59,6 +60,20 @@ const LAYERS: [string, string, string][] = [
   ['patch', 'surfaces', ''],
   ['grid', 'grids', ''],
 ]
+
+/** Parts of the ground: what they are, and their keys. */
+const GROUNDS: ['water' | 'grid', string, string][] = [
+  ['water', 'the water plane of a floating model', ''],
+  ['grid', 'the grid at z = 0', ''],
+]
+
+export function toggleGround(app: App, part: 'water' | 'grid'): void {
+  const { ground } = app.view
+  ground[part] = !ground[part]
+  store('ground', { water: ground.water, grid: ground.grid })
+  app.view.settle()
+  app.buildToolbar()
+}
 
 export function setStyle(app: App, style: Style): void {
   app.view.style = style
@@ -120,6 +135,11 @@ function viewCommands(app: App): Command[] {
     },
     ...STYLES.map(([n, words, key]) => ({ name: `Style: ${words}`, keys: key, run: () => setStyle(app, n) })),
     ...LAYERS.map(([k, w, key]) => ({ name: `Show or hide ${w}`, keys: key, run: () => toggleLayer(app, k) })),
+    ...GROUNDS.map(([part, words, key]) => ({
+      name: `Show or hide ${words}`,
+      keys: key,
+      run: () => toggleGround(app, part),
+    })),
     {
       name: 'Show or hide the mirror image',
       keys: 'M',

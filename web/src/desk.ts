@@ -1,7 +1,9 @@
 // The fairing desk: a curve, a surface, a network or a table of offsets, faired by hand; every act is a command in its log.
 
-import { redo, undo } from '@codemirror/commands'
+import { Contacts } from './contacts'
 import './desk.css'
+import { CutForm } from './desk_cut'
+import { DeskLists } from './desk_lists'
 import { type Chosen, type DeskFacts, DeskPainter, Sheet, strips, views } from './desk_paint'
 import { h, s, shown, store, stored } from './dom'
 import type { Editor } from './editor'
@@ -39,6 +41,24 @@ interface Session {
   source: Facts
   tolerance: number
   key?: string
+  /** The name under which the result is in the text, and the statements. */
+  applied?: { name: string; text: string }
+}
+
+/** What a step of the history restores. */
+interface Kept {
+  session: Session | null
+  log: string[]
+}
+
+/** A pointer that is down: on a point, on nothing, or only there to move the sheet. */
+interface Press {
+  id: number
+  at: Place
+  kind: 'point' | 'empty' | 'pan'
+  point: number
+  moved: boolean
+  command?: string
 }
 
 export class Desk {
@@ -55,9 +75,16 @@ export class Desk {
   private readonly sheet = new Sheet()
   private readonly painter = new DeskPainter(this.svg, this.sheet)
   private readonly bar = h('div', { class: 'desk-bar', role: 'toolbar', 'aria-label': 'fairing' })
-  private readonly lines = h('div', { class: 'desk-lines', role: 'listbox', tabindex: 0, 'aria-label': 'lines' })
-  private readonly suspects = h('div', { class: 'desk-suspects', role: 'log', 'aria-label': 'suspects' })
-  private readonly marks = h('div', { class: 'desk-marks', role: 'group', 'aria-label': 'marks' })
+  private readonly lists = new DeskLists({
+    run: (command) => void this.run(command),
+    showLine: (k) => this.showLine(k),
+    showPoint: (line, point) => this.showPoint(line, point),
+  })
+  private readonly cutting = new CutForm(
+    (command) => this.run(command),
+    (words) => this.say(words),
+    () => this.svg.focus(),
+  )
   private readonly top = h('div', { class: 'desk-views' })
   private readonly below = h('div', { class: 'desk-strips' })
   private readonly start = h('div', { class: 'desk-start' })
@@ -81,14 +108,11 @@ export class Desk {
   private session: Session | null = null
   private facts: DeskFacts | null = null
   private log: string[] = []
-  /** What can be done again, the next one last, and what was done: a command of the log, or a change of the text. */
-  private done: ('log' | 'text')[] = []
-  private undone: { kind: 'log' | 'text'; command: string; applied: string }[] = []
-  private applied = ''
   private shownLine = 0
   private tool = 'select'
   private chosen: Chosen = { point: 0, anchor: -1 }
-  private pressed: { at: Place; kind: 'point' | 'pan'; point: number; moved: boolean; command?: string } | null = null
+  private pressed: Press | null = null
+  private readonly contacts = new Contacts()
   private queue: Promise<unknown> = Promise.resolve()
   private timer = 0
   private stopping = false
@@ -126,35 +150,19 @@ export class Desk {
     })
     this.slider.addEventListener('input', () => this.slide())
     this.slider.addEventListener('change', () => void this.settleTolerance())
-    const side = h(
-      'div',
-      { class: 'desk-side' },
-      h('h2', {}, 'Lines'),
-      this.lines,
-      h('h2', {}, 'Suspects'),
-      this.suspects,
-      h('h2', {}, 'Marks'),
-      this.marks,
-    )
     this.element.append(
       this.bar,
+      this.cutting.element,
       h(
         'div',
         { class: 'desk-body' },
-        side,
+        this.lists.element,
         h('div', { class: 'desk-main' }, this.top, this.svg as unknown as HTMLElement, this.below, this.progress),
       ),
       this.line,
       this.start,
       help,
     )
-    this.lines.addEventListener('keydown', (e) => {
-      const by = { ArrowDown: 1, ArrowUp: -1 }[e.key]
-      if (!by || !this.facts) return
-      e.preventDefault()
-      e.stopPropagation()
-      this.showLine(this.shownLine + by)
-    })
     this.line.addEventListener('keydown', (e) => {
       e.stopPropagation()
       if (e.key === 'Escape') this.svg.focus()
@@ -165,7 +173,10 @@ export class Desk {
     on('pointerdown', (e) => this.down(e))
     on('pointermove', (e) => this.move(e))
     on('pointerup', (e) => this.up(e))
-    on('pointercancel', () => this.release())
+    on('pointercancel', (e) => {
+      this.contacts.up(e)
+      if (this.pressed?.id === e.pointerId) this.release()
+    })
     on('contextmenu', (e) => e.preventDefault())
     on('wheel', (e: WheelEvent) => {
       e.preventDefault()
@@ -195,7 +206,7 @@ export class Desk {
   }
 
   async settled(): Promise<void> {
-    await this.queue
+    for (let last = null; last !== this.queue; ) await (last = this.queue)
     while (this.timer) await new Promise((r) => setTimeout(r, 5))
     await this.sliding.settled()
     await this.queue
@@ -235,10 +246,11 @@ export class Desk {
   open(what: Facts): Promise<unknown> {
     return this.later(async () => {
       await this.editor.synced()
-      this.session = null
-      const found = await this.ask('desk_open', { ...what, line: 0 })
+      const before = this.kept
+      const found = await this.link.tell({ kind: 'desk_open', ...what, line: 0 })
       this.session = { source: found.source, tolerance: found.tolerance, key: found.key }
-      ;[this.log, this.done, this.undone, this.applied, this.shownLine] = [[], [], [], '', 0]
+      ;[this.log, this.shownLine] = [[], 0]
+      this.stepped(`Open ${found.title}`, before)
       this.chosen = { point: found.detail.points[0], anchor: -1 }
       this.slider.value = '0'
       this.start.hidden = true
@@ -254,14 +266,15 @@ export class Desk {
   /** Go on with a session that the browser has kept. */
   private goOn(kept: Facts): Promise<unknown> {
     return this.later(async () => {
+      let before = this.kept
       this.session = { source: kept.source, tolerance: kept.tolerance }
-      ;[this.log, this.done, this.undone, this.applied, this.shownLine] = [
-        kept.log,
-        kept.log.map(() => 'log'),
-        [],
-        '',
-        0,
-      ]
+      ;[this.log, this.shownLine] = [[], 0]
+      this.stepped(`Go on with ${kept.source.name}`, before)
+      for (const command of kept.log as string[]) {
+        before = this.kept
+        this.log = [...this.log, command]
+        this.stepped(command, before)
+      }
       this.start.hidden = true
       this.take((await this.ask('desk_show')) as DeskFacts, true)
       this.svg.focus()
@@ -272,10 +285,10 @@ export class Desk {
   run(command: string): Promise<boolean> {
     return this.later(async () => {
       if (!this.session) throw new Error('open a table or an object first')
+      const before = this.kept
       const found = await this.carriedOut(command)
       this.log = found.log
-      this.done.push('log')
-      this.undone = []
+      this.stepped(command, before)
       this.say('')
       this.take(found as DeskFacts)
       return true
@@ -320,57 +333,61 @@ export class Desk {
     void this.link.tell({ kind: 'desk_stop' }).catch(() => undefined)
   }
 
-  private async undoOne(): Promise<void> {
-    const kind = this.done.pop()
-    if (!kind) return this.say('nothing to undo at the desk')
-    if (kind === 'text') {
-      this.undone.push({ kind, command: '', applied: this.applied })
-      this.applied = ''
-      undo(this.editor.view)
-      await this.editor.synced()
-      return
-    }
-    this.undone.push({ kind, command: this.log.at(-1)!, applied: '' })
-    this.log = this.log.slice(0, -1)
-    this.take((await this.ask('desk_show')) as DeskFacts)
+  private get kept(): Kept {
+    return { session: this.session, log: this.log }
   }
 
-  private async redoOne(): Promise<void> {
-    const next = this.undone.pop()
-    if (!next) return this.say('nothing to redo at the desk')
-    this.done.push(next.kind)
-    if (next.kind === 'text') {
-      redo(this.editor.view)
-      this.applied = next.applied
+  /** A step of the page's history, from the state before to the present one. */
+  private stepped(name: string, before: Kept): void {
+    const after = this.kept
+    this.editor.steps.add({
+      name: `Desk: ${name}`,
+      back: () => this.restore(before),
+      again: () => this.restore(after),
+    })
+  }
+
+  private restore({ session, log }: Kept): void {
+    const fit = session !== this.session
+    ;[this.session, this.log] = [session, log]
+    this.decided++
+    if (!session) this.facts = null
+    void this.later(async () => {
+      this.starting()
+      if (this.session) return this.take((await this.ask('desk_show')) as DeskFacts, fit)
+      this.buttons()
+      this.paint()
+    })
+  }
+
+  /** Steps of the page's history, back or, with a negative count, again. */
+  private turn(count: number): void {
+    void this.later(async () => {
+      if (!this.editor.steps.go(count)) this.say(`nothing to ${count > 0 ? 'undo' : 'redo'}`)
       await this.editor.synced()
-      return
-    }
-    this.log = [...this.log, next.command]
-    this.take((await this.ask('desk_show')) as DeskFacts)
+    })
   }
 
   private async apply(): Promise<void> {
     await this.later(async () => {
-      if (!this.session) return
+      const { session } = this
+      if (!session) return
       await this.editor.synced()
       const stem = String(this.facts!.title)
         .replace(/\.\w+$/, '')
         .replace(/\W+/g, '_')
         .replace(/^(\d|_)/, 'f$1')
-      const taken = (name: string) => !this.applied && model.objects.some((o) => o.name === name)
+      const taken = (name: string) => model.objects.some((o) => o.name === name)
       let name = taken(stem) ? `${stem}_faired` : stem
       for (let k = 2; taken(name); k++) name = `${stem}_faired_${k}`
-      const answer = await this.ask('desk_apply', { name: this.appliedName ?? name, applied: this.applied })
-      this.appliedName ??= name
-      this.editor.apply(answer.edits, answer.version)
-      this.applied = answer.applied
-      this.done.push('text')
-      this.undone = []
+      if (session.applied) name = session.applied.name
+      const answer = await this.ask('desk_apply', { name, applied: session.applied?.text ?? '' })
+      session.applied = { name, text: answer.applied }
+      this.editor.apply(answer.edits, answer.version, `Apply ${name}`)
       await this.editor.synced()
       this.say(`${name} is in the text`)
     })
   }
-  private appliedName: string | null = null
 
   private async save(name: string): Promise<void> {
     await this.later(async () => {
@@ -393,9 +410,7 @@ export class Desk {
     if (!facts.detail.points.includes(this.chosen.point)) this.chosen = { point: facts.detail.points[0], anchor: -1 }
     if (!facts.detail.points.includes(this.chosen.anchor)) this.chosen.anchor = -1
     this.setSlider(facts.limit)
-    this.listLines()
-    this.listSuspects()
-    this.listMarks()
+    this.lists.fill(facts)
     this.buttons()
     this.paint()
     if (fit) this.fit()
@@ -405,7 +420,7 @@ export class Desk {
   private draw(facts: DeskFacts): void {
     this.facts = facts
     this.previewed = true
-    this.listLines()
+    this.lists.fillLines(facts)
     this.badge()
     this.paint()
   }
@@ -423,14 +438,20 @@ export class Desk {
   }
 
   private paint(): void {
-    if (!this.facts || this.element.hidden) return
+    if (this.element.hidden) return
+    if (!this.facts) return this.cleared()
     this.measure()
     this.painter.draw(this.facts, this.chosen, this.tool)
     const wide = (this.svg.parentElement as HTMLElement).clientWidth || 600
     this.below.replaceChildren(...(strips(this.facts, wide) as unknown as HTMLElement[]))
-    this.top.replaceChildren(...(views(this.facts, Math.floor(wide / 3) - 1, 190) as unknown as HTMLElement[]))
+    this.top.replaceChildren(...(views(this.facts, wide, 190) as unknown as HTMLElement[]))
     for (const line of this.top.querySelectorAll<SVGElement>('[data-line]'))
       line.addEventListener('click', () => this.showLine(Number(line.dataset.line)))
+  }
+
+  /** Nothing is open. */
+  private cleared(): void {
+    for (const part of [this.top, this.below]) part.replaceChildren()
   }
 
   fit(): void {
@@ -451,84 +472,10 @@ export class Desk {
     })
   }
 
-  private listLines(): void {
-    const f = this.facts!
-    this.lines.replaceChildren(
-      ...f.list.map((o, k) => {
-        const lock = h(
-          'button',
-          {
-            title: o.locked ? 'Unlock the line' : 'Lock the line as it is',
-            'aria-label': `${o.locked ? 'unlock' : 'lock'} ${o.name}`,
-            onclick: (e: Event) => (e.stopPropagation(), void this.run(`${o.locked ? 'unlock' : 'lock'} ${k + 1}`)),
-          },
-          o.locked ? 'Locked' : 'Lock',
-        )
-        const compared = f.compared?.[k]
-        return h(
-          'div',
-          { role: 'option', 'aria-selected': k === f.line, 'data-line': k, onclick: () => this.showLine(k) },
-          h('span', {}, o.name),
-          lock,
-          h(
-            'span',
-            { class: 'facts' },
-            `bends ${o.inflections[0]} → ${o.inflections[1]}, pieces ${o.pieces[0]} → ${o.pieces[1]}, moved ${shown(o.moved, 3)} (${Math.round(100 * o.share)} %)${compared ? `, ${shown(compared, 2)} by the last step` : ''}`,
-          ),
-        )
-      }),
-    )
-  }
-
-  private listSuspects(): void {
-    const f = this.facts!
-    this.suspects.replaceChildren(
-      ...(f.suspects.length
-        ? f.suspects.map((x) =>
-            h(
-              'div',
-              { 'data-point': x.point },
-              x.text,
-              x.reading && f.kind !== 'curves' ? ` Reading: ${shown(x.reading, 6)}. ` : ' ',
-              h(
-                'button',
-                { 'aria-pressed': x.accepted, onclick: () => void this.run(`accept ${x.point + 1}`) },
-                x.accepted ? 'Accepted' : 'Accept',
-              ),
-              h('button', { onclick: () => this.showPoint(x.line, x.point) }, 'Show'),
-            ),
-          )
-        : [h('p', { class: 'quiet' }, 'none')]),
-    )
-  }
-
   private showPoint(line: number, point: number): void {
     this.chosen = { point, anchor: -1 }
     this.showLine(line)
     this.svg.focus()
-  }
-
-  private listMarks(): void {
-    const f = this.facts!
-    const button = (words: string, command: string) =>
-      h('button', { title: `take away: ${words}`, onclick: () => void this.run(command) }, `${words} ×`)
-    const { knuckles, fixed, released } = f.detail
-    this.marks.replaceChildren(
-      ...knuckles.map((p) => button(`knuckle ${p + 1}`, `knuckle ${p + 1}`)),
-      ...fixed.map((p) => button(`fixed ${p + 1}`, `free ${p + 1}`)),
-      ...released.map((p) => button(`released ${p + 1}`, `accept ${p + 1}`)),
-      ...f.shapes
-        .filter((x) => x.line === f.line)
-        .map((x) =>
-          x.ends
-            ? button(
-                x.text,
-                `${x.text.split('=')[0]} ${x.ends.map((p) => p + 1).join('-')}${x.text.includes(':') && !x.text.startsWith('within') ? ` ${x.text.split(':')[1]}` : ''}`,
-              )
-            : button(x.text, `${x.text.replace('=', ' ')} line ${x.line + 1}`),
-        ),
-      ...(f.span ? [button(`range ${f.span[1] + 1}-${f.span[2] + 1}`, 'range off')] : []),
-    )
   }
 
   private badge(): void {
@@ -548,15 +495,19 @@ export class Desk {
     badge.setAttribute('aria-label', words)
   }
 
-  private starting(): void {
-    this.start.hidden = this.session !== null
-    if (this.session) return
+  /** What can be opened; over what is open, whose history stays, until another is chosen. */
+  private starting(on = this.session === null): void {
+    this.start.hidden = !on
+    if (!on) return
     const choose = h('input', {
       type: 'file',
       accept: '.csv,.tsv,.txt,.dat,.xyz,.pts',
       'aria-label': 'a table of offsets',
     })
     choose.addEventListener('change', () => choose.files?.[0] && void this.openFile(choose.files[0]))
+    const back = this.session
+      ? h('button', { onclick: () => this.starting(false) }, `Back to ${this.facts?.title}`)
+      : ''
     const picks = model.objects
       .filter((o) => ['curve', 'snake', 'surface'].includes(o.class) && o.state === 'ok')
       .slice(0, 60)
@@ -569,7 +520,7 @@ export class Desk {
         )
       : ''
     this.start.replaceChildren(
-      again,
+      back || again,
       h('h2', {}, 'Fair a curve, a surface or a table'),
       h(
         'p',
@@ -619,30 +570,27 @@ export class Desk {
     })
     const focus = (this.element.ownerDocument.activeElement as HTMLElement | null)?.getAttribute('title')
     this.bar.replaceChildren(
-      button('Open', '', () => this.reopen()),
+      button('Open', '', () => this.starting(!!this.start.hidden)),
       h('span', { class: 'tol' }, 'Tolerance', this.slider, this.value),
       button(f?.goal === 'fairest' ? 'Fairest' : 'Nearest', 'G', () => this.switchGoal(), {
         'aria-pressed': f?.goal === 'fairest',
       }),
       tool(['select', 'v', 'Select']),
       ...TOOLS.map(tool),
+      ...(f && f.kind !== 'curves'
+        ? [
+            button('Cut…', '', () => this.cutting.open()),
+            button('Put back', '', () => void this.run('put back'), { disabled: !f.cut }),
+          ]
+        : []),
       h('span', { class: 'grow' }),
       h('span', { class: 'badge', role: 'status' }),
-      button('Undo', '', () => void this.later(() => this.undoOne()), { disabled: !this.done.length }),
-      button('Redo', '', () => void this.later(() => this.redoOne()), { disabled: !this.undone.length }),
       button('Fit', '0', () => this.fit()),
       save,
       button('Apply', '', () => void this.apply(), { class: 'primary' }),
     )
     this.badge()
     if (focus) this.bar.querySelector<HTMLElement>(`[title="${CSS.escape(focus)}"]`)?.focus()
-  }
-
-  private reopen(): void {
-    this.session = null
-    this.facts = null
-    this.appliedName = null
-    this.starting()
   }
 
   private switchGoal(): void {
@@ -709,25 +657,43 @@ export class Desk {
   private down(e: PointerEvent): void {
     if (!this.facts) return
     this.svg.focus({ preventScroll: true })
-    this.svg.setPointerCapture(e.pointerId)
     const at = this.at(e)
-    const k = e.button === 0 ? this.painter.hit(at, REACH) : -1
+    this.arrives(e)
+    const use = this.contacts.down(e, at)
+    if (use === 'palm') return
+    if (use === 'pinch') return this.release()
+    this.svg.setPointerCapture(e.pointerId)
+    const k = e.button === 0 && use === 'tool' ? this.painter.hit(at, REACH) : -1
     this.pressed = {
+      id: e.pointerId,
       at,
-      kind: k >= 0 ? 'point' : 'pan',
+      kind: k >= 0 ? 'point' : e.button === 0 && use === 'tool' ? 'empty' : 'pan',
       point: k >= 0 ? this.facts.detail.points[k] : -1,
       moved: false,
     }
   }
 
+  /** A pen ends what fingers have begun. */
+  private arrives(e: PointerEvent): void {
+    if (this.contacts.arrives(e)) this.release()
+  }
+
   private move(e: PointerEvent): void {
-    const p = this.pressed
-    if (!p || !this.facts) return
     const at = this.at(e)
+    this.arrives(e)
+    if (!this.facts || this.contacts.ignored(e)) return
+    const pinch = this.contacts.pinch(e, at)
+    if (pinch) {
+      this.sheet.zoom(pinch.factor, pinch.middle)
+      this.sheet.pan(...pinch.by)
+      return this.paint()
+    }
+    const p = this.pressed
+    if (!p || p.id !== e.pointerId) return
     if (!p.moved && Math.hypot(at[0] - p.at[0], at[1] - p.at[1]) < CLICK) return
     if (!p.moved && p.kind === 'point' && this.tool !== 'select' && this.tool !== 'weight') return
     p.moved = true
-    if (p.kind === 'pan') {
+    if (p.kind !== 'point') {
       this.sheet.pan(at[0] - p.at[0], at[1] - p.at[1])
       p.at = at
       return this.paint()
@@ -758,8 +724,11 @@ export class Desk {
     return place
   }
 
+  /** Gives up what is under way. */
   private release(): void {
+    const given = this.pressed?.command
     this.pressed = null
+    if (!given) return
     void this.later(async () => {
       await this.sliding.settled()
       if (this.session) this.take((await this.ask('desk_show')) as DeskFacts)
@@ -767,9 +736,10 @@ export class Desk {
   }
 
   private up(e: PointerEvent): void {
+    this.contacts.up(e)
     const p = this.pressed
+    if (!p || p.id !== e.pointerId || !this.facts) return
     this.pressed = null
-    if (!p || !this.facts) return
     if (p.moved) {
       if (p.command) {
         void this.later(() => this.sliding.settled())
@@ -777,7 +747,8 @@ export class Desk {
       }
       return
     }
-    if (p.kind === 'pan') {
+    if (p.kind === 'pan') return
+    if (p.kind === 'empty') {
       if (this.tool === 'side') return this.sideAt(this.at(e))
       this.chosen.anchor = -1
       return this.paint()
@@ -831,7 +802,7 @@ export class Desk {
     if ((e.target as HTMLElement).matches('input[type=text]') && !(e.target as HTMLInputElement).readOnly) return
     e.preventDefault()
     e.stopPropagation()
-    void this.later(() => (key === 'y' || e.shiftKey ? this.redoOne() : this.undoOne()))
+    this.turn(key === 'y' || e.shiftKey ? -1 : 1)
   }
 
   private key(e: KeyboardEvent): void {
@@ -897,8 +868,6 @@ export class Desk {
     return {
       facts: this.facts,
       log: this.log,
-      undone: this.undone.length,
-      done: this.done.length,
       places,
       chosen: this.chosen,
       tool: this.tool,

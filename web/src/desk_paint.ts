@@ -48,6 +48,8 @@ export interface DeskFacts extends Facts {
   views?: [number, number, number][][]
   views_before?: [number, number, number][][]
   extents?: [number[], number[]]
+  /** Sections of the lines by planes that the network has no line in: diagonals by x and the length along the plane. */
+  sections?: { diagonals: Place[][]; buttocks: Place[][] }
   suspects: Facts[]
   names: string[]
   compared: (number | null)[]
@@ -319,11 +321,30 @@ const VIEWS: [string, number, number][] = [
   ['Profile', 0, 2],
 ]
 
-/** The views of a network at once: stations, waterlines and buttocks, the shown line strong. */
-export function views(f: DeskFacts, width: number, height: number): SVGElement[] {
+/** The views of a network beside each other: stations, waterlines, buttocks and diagonals, the shown line strong. */
+export function views(f: DeskFacts, wide: number, height: number): SVGElement[] {
   if (!f.views || !f.extents) return []
   const [low, high] = f.extents
-  return VIEWS.map(([name, i, j]) => {
+  const { diagonals, buttocks } = f.sections ?? { diagonals: [], buttocks: [] }
+  const width = Math.floor(wide / (diagonals.length ? 4 : 3)) - 1
+  const view = (name: string, ...parts: SVGElement[]) =>
+    s(
+      'svg',
+      {
+        class: 'desk-view',
+        viewBox: `0 0 ${width} ${height}`,
+        width,
+        height,
+        role: 'img',
+        'aria-label': name,
+        'data-view': name,
+      },
+      ...parts,
+      s('text', { class: 'title', x: 8, y: 15 }, name),
+    )
+  const cutBy = (sheet: Sheet, lines: Place[][]) =>
+    lines.map((line) => path(join(line.map(sheet.to)), { class: 'line section' }))
+  const all = VIEWS.map(([name, i, j]) => {
     const sheet = new Sheet()
     sheet.size = [width, height]
     sheet.fit(
@@ -339,21 +360,12 @@ export function views(f: DeskFacts, width: number, height: number): SVGElement[]
     )
     const before = (f.views_before ?? []).map((line) => path(flat(line), { class: 'line before' }))
     const cut = f.cut ? [path(flat(f.cut.polyline), { class: 'line cut' })] : []
-    return s(
-      'svg',
-      {
-        class: 'desk-view',
-        viewBox: `0 0 ${width} ${height}`,
-        width,
-        height,
-        role: 'img',
-        'aria-label': name,
-        'data-view': name,
-      },
-      ...before,
-      ...lines,
-      ...cut,
-      s('text', { class: 'title', x: 8, y: 15 }, name),
-    )
+    const sections = name === 'Profile' ? cutBy(sheet, buttocks) : []
+    return view(name, ...before, ...sections, ...lines, ...cut)
   })
+  if (!diagonals.length) return all
+  const sheet = new Sheet()
+  sheet.size = [width, height]
+  sheet.fit(diagonals.flat(), 18)
+  return [...all, view('Diagonals', ...cutBy(sheet, diagonals))]
 }

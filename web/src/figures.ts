@@ -32,8 +32,35 @@ export const FIGURES: Record<string, [number, string]> = {
   'hydrostatics.cwp': [0, 'waterplane coefficient'],
 }
 
+/** Figures of an object, by their spelling. */
+const OF_OBJECTS: [RegExp, number, string][] = [
+  [/^volume\([^()]*\)$/, 3, 'volume of the set'],
+  [/^mass_centre\([^()]*\)$/, 1, 'centre of the volume'],
+  [/^inertia\([^()]*\)\[1\]\.x$/, 5, 'moment of inertia about x through the centre, of density 1'],
+  [/^inertia\([^()]*\)\[2\]\.y$/, 5, 'moment of inertia about y through the centre, of density 1'],
+  [/^inertia\([^()]*\)\[3\]\.z$/, 5, 'moment of inertia about z through the centre, of density 1'],
+  [/^[\w.]+\.volume$/, 3, 'volume that the surface or body encloses'],
+  [/^[\w.]+\.area$/, 2, 'area'],
+  [/^[\w.]+\.centroid$/, 1, 'centre of the volume of a body, of the area of a surface'],
+  [/^[\w.]+\.centre$/, 1, 'centre of mass'],
+  [/^[\w.]+\.mass$/, 0, 'mass'],
+  [/^[\w.]+\.length$/, 1, 'length of the curve'],
+]
+
+/** The power of the unit of length of a figure, and its full name; nothing for other expressions. */
+export function figure(expression: string): [number, string] | undefined {
+  const own = FIGURES[expression]
+  if (own) {
+    // The panels of a mirrored model are those of the part that it states.
+    const part = { 1: ', one half', 2: ', one quarter', 3: ', one eighth' }[model.mirror.length] ?? ''
+    return expression.startsWith('mesh.') ? [own[0], own[1] + part] : own
+  }
+  const found = OF_OBJECTS.find(([form]) => form.test(expression))
+  return found && [found[1], found[2]]
+}
+
 /** The unit of a figure in the model's unit of length; nothing for those without one, and for expressions. */
 export function unitOf(expression: string): string {
-  const power = FIGURES[expression]?.[0] ?? 0
-  return power && model.unit ? `${model.unit}${['', '', '²', '³', '⁴'][power]}` : ''
+  const power = figure(expression)?.[0] ?? 0
+  return power && model.unit ? `${model.unit}${['', '', '²', '³', '⁴', '⁵'][power]}` : ''
 }

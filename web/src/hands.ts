@@ -98,6 +98,12 @@ export class Hands {
     )
     host.append(this.gumball.element, this.tip, this.chooser, this.entry)
     this.requests = new Newest((run) => run())
+    this.chooser.addEventListener('keydown', (e) => {
+      // Enter and Space are the button's own; the rest is the drag's.
+      if (e.key === 'Tab' || e.key === 'Enter' || e.key === ' ') return
+      view.canvas.focus({ preventScroll: true })
+      this.key(e)
+    })
     const c = view.canvas
     on(['faults'], () => {
       const drag = this.drag ?? this.latest
@@ -219,7 +225,7 @@ export class Hands {
       const said = drag.own.length ? `${object}: ${drag.own.join(', ')}` : `${object} follows from an expression`
       if (this.drag === drag) {
         this.act.status(
-          `${said} · ${drag.keys ? 'arrows move it, Enter ends, ' : ''}X Y Z lock an axis, S keeps it on the surface below, digits enter a value, Esc takes it back`,
+          `${said} · ${drag.keys ? 'arrows move it, Enter ends, ' : ''}X Y Z lock an axis, S keeps it on the surface below, digits enter a value, Tab chooses what follows, Esc takes it back`,
         )
         if (drag.moved) this.aim(drag, false)
       }
@@ -241,34 +247,39 @@ export class Hands {
     this.grab(item, ...this.view.project(this.view.place(item)), true)
   }
 
-  /** Chips of the numbers that may follow besides the object's own; the ones that do are pressed. */
+  /** Chips of the numbers that may follow besides the object's own; those that do are pressed, and share the motion. */
   private offer(drag: Drag): void {
     const others = drag.handles.filter((k) => !k.own)
-    const follow = drag.names.filter((n) => !drag.own.includes(n))
+    const follow = drag.chosen.length ? drag.chosen : drag.names.filter((n) => !drag.own.includes(n))
     this.chooser.hidden = !others.length || !follow.length
     if (this.chooser.hidden) return
     const [x, y] = this.view.project(this.view.place(drag.item))
     const choose = (names: string[]) => {
       drag.chosen = names
+      this.offer(drag)
       this.aim(drag, false)
     }
-    const chip = (label: string, names: string[]) =>
-      h(
+    const chip = (label: string, names: string[]) => {
+      const on = names.every((n) => follow.includes(n))
+      return h(
         'button',
         {
-          class: `chip ${names.join() === follow.join() ? 'on' : ''}`,
-          'aria-pressed': names.join() === follow.join(),
+          class: `chip ${on ? 'on' : ''}`,
+          'aria-pressed': on,
+          'data-names': names.join(),
           onpointerdown: (e: Event) => e.stopPropagation(),
-          onclick: () => choose(names),
+          onclick: () => choose(on ? follow.filter((n) => !names.includes(n)) : [...new Set([...follow, ...names])]),
         },
         label,
       )
+    }
     const reach = (k: HandleFact) =>
       Math.hypot(...k.direction) * (k.range ? k.range[1] - k.range[0] : Math.abs(k.value))
     const listed = [...others]
       .sort((a, b) => Number(follow.includes(b.name)) - Number(follow.includes(a.name)) || reach(b) - reach(a))
       .slice(0, 6)
     const params = others.filter((k) => k.parameter).map((k) => k.name)
+    const focus = this.chooser.querySelector<HTMLElement>(':focus')?.dataset.names
     this.chooser.replaceChildren(
       h('span', { class: 'quiet' }, 'follows by'),
       ...listed.map((k) =>
@@ -276,6 +287,7 @@ export class Hands {
       ),
       ...(params.length > 1 ? [chip('all parameters', params)] : []),
     )
+    if (focus) this.chooser.querySelector<HTMLElement>(`[data-names="${CSS.escape(focus)}"]`)?.focus()
     this.chooser.style.left = `${x + 16}px`
     this.chooser.style.top = `${y + 16}px`
   }
@@ -547,7 +559,10 @@ export class Hands {
       else if (axis >= 0) [drag.axis, drag.plane] = [null, drag.plane === axis ? null : axis]
       else if (e.key === 'Enter' && drag.keys) void this.finish(drag.moved)
       else if (e.key === 'Escape') this.cancel()
-      else if (/^[\d=.-]$/.test(e.key)) return this.enter(drag, e)
+      else if (e.key === 'Tab' && !this.chooser.hidden) {
+        e.preventDefault()
+        return this.chooser.querySelector('button')?.focus()
+      } else if (/^[\d=.-]$/.test(e.key)) return this.enter(drag, e)
       else return
       e.preventDefault()
       e.stopPropagation()

@@ -68,11 +68,15 @@ function word(tr: Transaction): string {
   return `${what}, line ${line}`
 }
 
-/** A step, and the text that it is in. */
-interface Step {
+/** A step of a room that keeps a log of its own. */
+export interface LogStep {
   name: string
-  of: EditorView
+  back(): void
+  again(): void
 }
+
+/** A step, and the text that it is in, if it is one of a text. */
+type Step = { name: string; of: EditorView } | (LogStep & { of: null })
 
 const count = (list: Step[], of: EditorView) => list.filter((s) => s.of === of).length
 
@@ -137,13 +141,24 @@ export class Steps {
       }
     }
     while (count(this.past, of) < undoDepth(update.state)) {
-      const last = this.past.at(-1)?.of
-      // What is typed into that text from now on comes after this step.
-      if (last && last !== of) last.dispatch({ annotations: stepEnds })
+      if (this.past.at(-1)?.of !== of) this.end()
       this.past.push({ name, of })
     }
     drop(this.past, of, count(this.past, of) - undoDepth(update.state))
     drop(this.ahead, of, count(this.ahead, of) - redoDepth(update.state))
+    this.onChange()
+  }
+
+  /** Text that is typed from now on comes after the last step. */
+  private end(): void {
+    this.past.at(-1)?.of?.dispatch({ annotations: stepEnds })
+  }
+
+  /** A step of a log, after which none that was taken back can be done again. */
+  add(step: LogStep): void {
+    this.end()
+    this.ahead.length = 0
+    this.past.push({ ...step, of: null })
     this.onChange()
   }
 
@@ -152,9 +167,18 @@ export class Steps {
     const single = Math.abs(many) === 1
     let gone = 0
     while (gone < Math.abs(many)) {
-      const of = (many > 0 ? this.past : this.ahead).at(-1)?.of
-      if (!of || !(many > 0 ? undo : redo)(of)) break
-      this.onTurned(of)
+      const [from, to] = many > 0 ? [this.past, this.ahead] : [this.ahead, this.past]
+      const step = from.at(-1)
+      if (step?.of === null) {
+        to.push(...from.splice(-1))
+        if (many > 0) step.back()
+        else step.again()
+        this.onChange()
+        gone++
+        continue
+      }
+      if (!step || !(many > 0 ? undo : redo)(step.of)) break
+      this.onTurned(step.of)
       if (!(single && this.idle)) gone++
     }
     return gone

@@ -24,6 +24,7 @@ import { GivenNumbers } from './numbers'
 import { Orientation } from './orientation'
 import { help, palette } from './palette'
 import { inspectorPanel, messagesPanel, parametersPanel, strip } from './panels'
+import { triangles } from './probe'
 import type { ValueFact } from './protocol'
 import { Rooms } from './rooms'
 import { Saving } from './saving'
@@ -46,6 +47,8 @@ const { say, warn } = shell
 /** The notebook's cell that the page is inside of, if any: it follows the text. */
 let cell: Cell | null = null
 let selected = ''
+/** True while a hand holds a slider or a number. */
+let held = false
 let fitted = false
 let instance = ''
 const contours = stored('contours', true)
@@ -54,6 +57,7 @@ const contours = stored('contours', true)
 
 const view = new View(shell.view)
 const canvas = view.canvas
+Object.assign(view.ground, stored('ground', { water: true, grid: false }))
 canvas.tabIndex = 0
 canvas.setAttribute('role', 'application')
 canvas.setAttribute('aria-label', 'model')
@@ -123,7 +127,10 @@ const actions: App['actions'] = {
     if (!hidden.delete(name)) hidden.add(name)
     hide()
   },
-  ghost: (on) => view.ghost(on),
+  ghost: (on) => {
+    held = on
+    view.ghost(on)
+  },
   fair: link.local ? null : (name) => void fair(name),
   isolate(name) {
     hidden.clear()
@@ -425,6 +432,7 @@ function take(frame: Frame): void {
   ]
   if (head.unit !== undefined) model.unit = head.unit
   if (head.program !== undefined) model.program = head.program
+  if (head.mirror !== undefined) model.mirror = head.mirror
   const scene = view.take(frame)
   for (const [key, name, topic] of facts) {
     if (head[key] === undefined) continue
@@ -447,42 +455,57 @@ function take(frame: Frame): void {
   if (head.rev !== undefined && head.rev !== model.rev) {
     model.rev = head.rev
     changed('rev')
-    askFloating()
+    if (!link.still) askFloating()
     void watchUsual()
   }
   document.body.dataset.state = 'alive'
+}
+
+/** How long a hand rests before numbers are computed, ms. */
+const REST = 150
+let lastMove = 0
+addEventListener('pointermove', () => (lastMove = performance.now()), true)
+
+/** What waits until nothing has come, and no hand has moved what it holds, for a moment. */
+function atRest(run: () => void): () => void {
+  let timer = 0
+  const moving = () => (held || hands.busy) && performance.now() - lastMove < REST
+  const wait = () => {
+    clearTimeout(timer)
+    timer = window.setTimeout(() => (moving() ? wait() : run()), REST)
+  }
+  return wait
 }
 
 /** Asks whether the model floats. */
 const floating = new Newest<void>(async () => {
   const ask = async () => (await link.ask('evaluate', { expressions: [IMMERSED] })).head.values[0].value
   const immersed = view.mirrored.includes('y') ? await ask().catch(() => null) : null
-  model.floats = floats(view.mirrored, immersed)
+  afloat(floats(view.mirrored, immersed))
   fitTabs()
 })
-let floated = 0
-function askFloating(): void {
-  clearTimeout(floated)
-  if (!link.still) floated = window.setTimeout(() => floating.push(undefined), 150)
+/** The model floats, or does not: the picture has its water. */
+function afloat(on: boolean): void {
+  model.floats = on
+  if (view.afloat === on) return
+  view.afloat = on
+  view.settle()
+  buildToolbar(app)
 }
+const askFloating = atRest(() => floating.push(undefined))
 
-// ValueFact numbers follow the scene: at once while they are quick, else now and then, slow ones when the hand rests:
-// a slider that moves does not wait for them.
+// Watched numbers follow the scene: at once while they are quick and no hand holds anything, else when the hand rests. A
+// move ends what is computed of them.
 let took = 0
-let resting = 0
 const measuring = new Newest<void>(async () => {
   const from = performance.now()
   await link.ask('measure').catch(() => undefined)
   took = performance.now() - from
 })
+const measureLater = atRest(() => measuring.push(undefined))
 function measure(): void {
-  if (took < 4) return measuring.push(undefined)
-  if (took < 60 && resting) return
-  clearTimeout(resting)
-  resting = window.setTimeout(() => {
-    resting = 0
-    measuring.push(undefined)
-  }, 150)
+  if (took < 4 && !held && !hands.busy) measuring.push(undefined)
+  else measureLater()
 }
 
 link.onFrame = take
@@ -541,7 +564,7 @@ async function watchUsual(): Promise<void> {
   watching = true
   floating.push(undefined)
   await floating.settled()
-  const expressions = kept ?? usualNumbers(model.floats)
+  const expressions = kept ?? usualNumbers(model.floats, model.objects)
   await link.ask('watch', { expressions }).catch(() => (watching = false))
 }
 
@@ -585,7 +608,7 @@ async function begin(hello: any): Promise<void> {
     if (link.local) await link.ask('open')
     if (hello.watched) {
       const immersed = hello.watched.find((w: ValueFact) => w.expression === IMMERSED)?.value
-      model.floats = floats(view.mirrored, immersed)
+      afloat(floats(view.mirrored, immersed))
       model.watched = usualOf(hello.watched, model.floats)
       changed('watched')
       fitTabs()
@@ -654,6 +677,8 @@ Object.assign(window, {
         .flatMap(([, i]) => Array.from(i.position)),
     text: (file = '') => files.of(file)?.text,
     over: (name: string) => view.drawnOver(name),
+    ground: () => ({ ...view.ground.shown, bounds: [...view.box.min.toArray(), ...view.box.max.toArray()] }),
+    triangles: () => triangles(view),
     get board() {
       return rooms.loaded.board
     },

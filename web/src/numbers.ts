@@ -29,6 +29,7 @@ export class GivenNumbers {
   private readonly paid = h('div', { class: 'paid', 'aria-live': 'polite' })
   private expression = ''
   private begin = 0
+  private reached = 0
   private homes: Record<string, number> = {}
   private found: Adjustment[] = []
   private readonly asking: Newest<number>
@@ -41,9 +42,15 @@ export class GivenNumbers {
     host.append(this.panel)
     this.asking = new Newest(async (value) => {
       try {
-        const by = Object.fromEntries(Object.entries(this.homes).map(([name, home]) => [name, { home }]))
+        const weights = this.weights
+        const by = Object.fromEntries(
+          Object.entries(this.homes).map(([name, home]) => [name, { home, weight: weights[name] ?? 1 }]),
+        )
         const { head } = await this.link.ask('solve_for', { targets: { ...this.held(), [this.expression]: value }, by })
         this.found = head.adjustments
+        const reached = new Map<string, number>(head.reached)
+        this.reached = reached.get(this.expression) ?? value
+        if (this.dragged) this.dragged.textContent = shown(this.reached)
         this.pay('')
       } catch (error) {
         if (error instanceof Refused && error.message !== 'superseded') this.pay(error.message)
@@ -116,12 +123,6 @@ export class GivenNumbers {
     return this.dragged !== null
   }
 
-  /** Shows the value of what is dragged. */
-  follow(): void {
-    const value = model.watched.find((w) => w.expression === this.expression)?.value
-    if (this.dragged && typeof value === 'number') this.dragged.textContent = shown(value)
-  }
-
   private get free(): string[] {
     return model.params.filter((p) => !p.whole && p.written).map((p) => p.name)
   }
@@ -130,6 +131,30 @@ export class GivenNumbers {
     const free = this.free
     const kept = stored<string[]>(`given.${model.name}`, free).filter((n) => free.includes(n))
     return kept.length ? kept : free
+  }
+
+  /** Weights of the parameters' changes over their ranges, where they are not 1. */
+  private get weights(): Record<string, number> {
+    return stored<Record<string, number>>(`weights.${model.name}`, {})
+  }
+
+  private weighing(name: string): HTMLElement {
+    const field = h('input', {
+      type: 'text',
+      class: 'number weight',
+      inputmode: 'decimal',
+      'aria-label': `weight of ${name}`,
+      title: 'Weight: twice as much changes it less',
+    })
+    const shownNow = () => (field.value = shown(this.weights[name] ?? 1))
+    shownNow()
+    field.addEventListener('change', () => {
+      const weight = Number(field.value.replace(',', '.'))
+      if (!(weight > 0 && weight < Infinity)) this.act.say(`${name}: expected a weight above 0, found ${field.value}`)
+      else store(`weights.${model.name}`, { ...this.weights, [name]: weight })
+      shownNow()
+    })
+    return field
   }
 
   /** The other watched numbers that stay as they are. */
@@ -167,11 +192,7 @@ export class GivenNumbers {
     await this.asking.settled()
     const values = Object.fromEntries(this.found.filter((a) => a.after !== a.before).map((a) => [a.name, a.after]))
     if (!Object.keys(values).length) return this.cancel()
-    const now = model.watched.find((w) => w.expression === this.expression)?.value
-    await this.act.write(
-      values,
-      `${this.expression}: ${shown(this.begin)} → ${shown(typeof now === 'number' ? now : this.begin)}`,
-    )
+    await this.act.write(values, `${this.expression}: ${shown(this.begin)} → ${shown(this.reached)}`)
   }
 
   private async cancel(): Promise<void> {
@@ -182,7 +203,7 @@ export class GivenNumbers {
   private open(beside: HTMLElement, expression: string, value: number): void {
     const field = h('input', { type: 'text', class: 'number', 'aria-label': `value of ${expression}` })
     field.value = shown(value, 9)
-    const boxes = (key: string, all: string[], on: string[]) => {
+    const boxes = (key: string, all: string[], on: string[], beside: (name: string) => HTMLElement | '' = () => '') => {
       const list = all.map((name) => {
         const box = h('input', { type: 'checkbox', checked: on.includes(name) })
         box.addEventListener('change', () =>
@@ -191,9 +212,9 @@ export class GivenNumbers {
             list.filter((l) => l.box.checked).map((l) => l.name),
           ),
         )
-        return { name, box, label: h('label', {}, box, name) }
+        return { name, box, row: h('div', { class: 'choice' }, h('label', {}, box, name), beside(name)) }
       })
-      return h('div', { class: 'choices' }, ...list.map((l) => l.label))
+      return h('div', { class: 'choices' }, ...list.map((l) => l.row))
     }
     const give = async () => {
       try {
@@ -211,8 +232,8 @@ export class GivenNumbers {
     this.panel.replaceChildren(
       h('h3', {}, expression),
       h('div', { class: 'fact' }, field, h('button', { class: 'primary', onclick: () => void give() }, 'Give')),
-      h('h3', {}, 'May change'),
-      boxes('given', this.free, this.chosen),
+      h('h3', {}, 'May change', h('span', { class: 'quiet' }, 'weight')),
+      boxes('given', this.free, this.chosen, (name) => this.weighing(name)),
       ...(others.length
         ? [h('h3', {}, 'Stays'), boxes('held', others, stored<string[]>(`held.${model.name}`, []))]
         : []),

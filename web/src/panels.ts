@@ -2,7 +2,7 @@
 
 import { h, shown, store, stored } from './dom'
 import { fileName } from './editor'
-import { FIGURES, unitOf } from './figures'
+import { FIGURES, figure, unitOf } from './figures'
 import type { RequestKind, RequestOf } from './link'
 import type { GivenNumbers } from './numbers'
 import type { FaultFact, ParamFact, RemarkFact } from './protocol'
@@ -112,7 +112,7 @@ export function parametersPanel(host: HTMLElement, act: Actions): void {
         const v = stepped(Math.min(high, Math.max(low, value)), low, high, p.whole)
         slider.value = String(v)
         field.value = p.whole ? String(v) : shown(v, 7)
-        slider.setAttribute('aria-valuetext', `${field.value} ${model.unit}`)
+        slider.setAttribute('aria-valuetext', field.value)
         if (entry.wanted === null) entry.from = entry.p.value
         entry.wanted = v
         act.set(p.name, v)
@@ -181,7 +181,7 @@ export function parametersPanel(host: HTMLElement, act: Actions): void {
   function show({ p, slider, field }: { p: ParamFact; slider: HTMLInputElement; field: HTMLInputElement }): void {
     if (!dragging(slider)) slider.value = String(p.value)
     if (document.activeElement !== field) field.value = text(p)
-    slider.setAttribute('aria-valuetext', `${text(p)} ${model.unit}`.trim())
+    slider.setAttribute('aria-valuetext', text(p))
   }
 
   /** Values when the page was opened, for reset. */
@@ -565,7 +565,7 @@ export function strip(host: HTMLElement, act: Actions, given: (host: HTMLElement
   })
   function build(): void {
     // A number that is dragged keeps its element.
-    if (numbers.busy) return numbers.follow()
+    if (numbers.busy) return
     box.replaceChildren(
       ...model.watched.map((w) => {
         const was = marked.get(w.expression)
@@ -577,13 +577,13 @@ export function strip(host: HTMLElement, act: Actions, given: (host: HTMLElement
           'span',
           {
             class: `number-box ${w.error ? 'bad' : ''}`,
-            title: w.error ?? (FIGURES[w.expression] ? `${w.expression}: ${FIGURES[w.expression][1]}` : w.expression),
+            title: w.error ?? [w.expression, ...(figure(w.expression)?.slice(1) ?? [])].join(': '),
           },
           h('span', { class: 'key' }, w.expression.replace(/^(hydrostatics|mesh)\./, '')),
           value !== null && !act.still && model.params.length
             ? numbers.handle(w.expression, value)
             : h('span', { class: 'value mono' }, w.error ? '–' : shown(w.value)),
-          value !== null && unitOf(w.expression) ? h('span', { class: 'unit' }, unitOf(w.expression)) : '',
+          !w.error && unitOf(w.expression) ? h('span', { class: 'unit' }, unitOf(w.expression)) : '',
           delta
             ? h(
                 'span',

@@ -32,8 +32,9 @@ void main() {
   // Parallel lights along x on a ceiling over the model, as the eye sees them in it (Klass 1980).
   if (mode == 4) { vec3 r = 2.0 * dot(n, eye) * n - eye; float way = (centre.z + 3.0 * size - vWorld.z) / max(r.z, 1e-3); float y = vWorld.y + way * r.y - centre.y; base = mix(vec3(0.17, 0.2, 0.25), vec3(0.98), r.z > 1e-3 ? stripe(0.1 * stripes * y / size) : 0.0); }
   vec3 key = normalize(-0.45 * right + 0.7 * upward + 0.55 * towards);
-  float diffuse = 0.52 + 0.16 * (0.5 + 0.5 * n.z) + 0.24 * max(dot(n, eye), 0.0) + 0.30 * max(dot(n, key), 0.0);
-  float gloss = 0.09 * pow(max(dot(n, normalize(key + eye)), 0.0), 40.0);
+  // By the direction of view, not by the eye: a plane is one grey in perspective, too.
+  float diffuse = 0.52 + 0.16 * (0.5 + 0.5 * n.z) + 0.24 * max(dot(n, towards), 0.0) + 0.30 * max(dot(n, key), 0.0);
+  float gloss = 0.09 * pow(max(dot(n, normalize(key + towards)), 0.0), 40.0);
   float shade = mix(1.0, diffuse, lit);
   vec3 c = base * shade * (inside ? 0.86 : 1.0) + (inside ? 0.0 : gloss * lit);
   float g = dot(c, vec3(0.3, 0.59, 0.11));

@@ -17,6 +17,8 @@ export const model = {
   program: true,
   /** Whether its hydrostatics mean something. */
   floats: false,
+  /** The axes across which the model is mirrored. */
+  mirror: '',
   rev: 0,
 }
 

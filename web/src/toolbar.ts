@@ -2,7 +2,7 @@
 
 import type { App } from './app'
 import type { Standard } from './camera'
-import { FIELDS, LOOKS, STYLES, setStyle, toggleLayer, toggleMeasure } from './commands'
+import { FIELDS, LOOKS, STYLES, setStyle, toggleGround, toggleLayer, toggleMeasure } from './commands'
 import { h } from './dom'
 import { type IconName, icon } from './icons'
 import { model } from './state'
@@ -80,6 +80,8 @@ export function buildToolbar(app: App): void {
     button('points', 'Points (.)', () => toggleLayer(app, 'point'), view.layers.point),
     button('curves', 'Curves (,)', () => toggleLayer(app, 'curve'), view.layers.curve),
     button('contours', 'Contours (C)', () => toggleLayer(app, 'contour'), view.layers.contour),
+    button('ground', 'Grid at z = 0', () => toggleGround(app, 'grid'), view.ground.grid),
+    model.floats ? button('water', 'Water plane', () => toggleGround(app, 'water'), view.ground.water) : '',
     button(
       'section',
       'Section (Shift+X, Y, Z)',

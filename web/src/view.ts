@@ -31,6 +31,7 @@ import { Cap } from './cap'
 import { coloured, HUES, hex, ink, type Line, type Scale, scale } from './colour'
 import { creases, isTriangulation } from './creases'
 import type { Frame, Part } from './frame'
+import { Ground } from './ground'
 import { type Pane, panes } from './panes'
 import { type Hit, hit } from './pick'
 import { DOT_FRAGMENT, DOT_VERTEX, FRAGMENT, VERTEX } from './shaders'
@@ -116,8 +117,9 @@ export class View {
   onFrame: () => void = () => {}
   /** Picture points at the top that are covered. */
   covered: () => number = () => 0
-  /** The axes across which the model is mirrored. */
+  /** The axes across which the model is mirrored, and whether it floats at z = 0. */
   mirrored = ''
+  afloat = false
   private readonly renderer: WebGLRenderer
   private readonly scene = new Scene()
   private readonly model = new Group()
@@ -127,6 +129,8 @@ export class View {
   private readonly cut = new Group()
   /** The hatched face of a section. */
   readonly cap: Cap
+  /** Water and grid: nothing of the model. */
+  readonly ground = new Ground()
   private readonly cloud: Points
   private dotItems: Drawn[] = []
   private readonly resolution = new Vector2(1, 1)
@@ -154,7 +158,7 @@ export class View {
     this.renderer.setPixelRatio(Math.min(2, devicePixelRatio))
     host.append(this.canvas)
     this.cap = new Cap(this.renderer.getPixelRatio())
-    this.scene.add(this.model, this.image, this.extras, this.others, this.cut, this.cap.group)
+    this.scene.add(this.model, this.image, this.extras, this.others, this.cut, this.cap.group, this.ground.group)
     const material = new ShaderMaterial({
       uniforms: { pixels: { value: 7 * this.renderer.getPixelRatio() } },
       vertexShader: DOT_VERTEX,
@@ -509,6 +513,7 @@ export class View {
     ;(this.line('edge') as LineBasicMaterial).opacity = this.style === 'panels' || this.style === 'wire' ? 0.6 : 0.2
     this.placeDots()
     this.reflect()
+    this.ground.follow(this.bounds, this.afloat, this.dark)
     this.draw()
   }
 
@@ -863,7 +868,7 @@ export class View {
     renderer.setScissorTest(panes.length > 1)
     panes.forEach(({ left, top, width, height }, k) => {
       const camera = this.cameras[k]
-      camera.aim(width / height, this.bounds)
+      camera.aim(width / height, this.ground.within(this.bounds))
       this.uniforms.towards.value.copy(camera.towards)
       this.uniforms.upward.value.copy(camera.up)
       this.uniforms.right.value.copy(camera.right)
@@ -882,7 +887,7 @@ export class View {
 
   private aim(): void {
     const { width, height } = this.pane
-    this.camera.aim(width / height, this.bounds)
+    this.camera.aim(width / height, this.ground.within(this.bounds))
   }
 
   /** The same while the camera stays. */

@@ -60,6 +60,7 @@ class Board:
         self._text = ""
         self._faults: list[dict[str, Any]] = []
         self._left = False
+        self._asked: list[list[int]] | None = None
         self._session = self._new()
         self._guesses = self._new()
         self._guessed: list[str] = []
@@ -83,13 +84,17 @@ class Board:
             self._session, self._faults, old = self._new(), [], []
         for k, line in enumerate(new[len(old) :], len(old) + 1):
             for reply in map(Reply.from_row, self._session.run_line(line)):
-                if reply.is_error:
+                if not reply.is_error:
+                    self._asked = _face(reply.text)
+                else:
                     fault = {"line": k, "text": reply.text, "next": reply.next}
                     self._faults.append({**fault, "code": reply.code})
         # A question at the end of a text, such as which of several solids is meant, is left open:
         # the drawing is shown, and lines that answer it are run with the whole text.
         self._left = self._session.asks()
-        if self._left:
+        if not self._left:
+            self._asked = None
+        else:
             self._session.run_line(f'USING "{self._session.active()}"')
         self._text = text
 
@@ -282,21 +287,22 @@ class Board:
         found = json.loads(self._session.objects_json())["objects"]
         return next((o for o in found if o["name"] == self._object), {})
 
-    def facts(self, move: dict[str, Any] | None = None) -> dict[str, Any]:
+    def facts(self, moves: Sequence[dict[str, Any]] = ()) -> dict[str, Any]:
         """The object as the page draws it.
 
         Parameters
         ----------
-        move
-            A point, and where it is meanwhile: ``{"point": 3, "at": [u, v]}``.
+        moves
+            Points, and where they are meanwhile: ``{"point": 3, "at": [u, v]}``.
         """
         session, name = self._session, self._object
         out: dict[str, Any] = {"object": name, "objects": session.names(), "faults": self._faults}
+        out["asked"] = self._asked if name == session.active() else None
         if name is None:
             return out
 
         def look() -> None:
-            if move is not None:
+            for move in moves:
                 u, v = (_number(x) for x in move["at"])
                 session.run_line(f"POINT {int(move['point'])} AT {u} {v}")
             out.update(self._object_facts(self._data()))
@@ -493,7 +499,7 @@ class Board:
             self.choose(request.get("object") or self._object)
             return {"edits": edits, **self.facts()}
         if kind == "board_drag":
-            return self.facts(request["move"])
+            return self.facts(request["moves"])
         if kind in ("board_pointer", "board_place"):
             return self.pointer(request)
         if kind == "board_solid":
@@ -501,6 +507,14 @@ class Board:
         if kind == "board_check":
             return {"checks": self.check(), "proposals": self.proposals()}
         return self.facts()
+
+
+def _face(text: str) -> list[list[int]] | None:
+    """The loops of the face that a reply asks about, the outer one first; None for others."""
+    found = re.fullmatch(r"is this a face: ([\d HOLE]+)\?", text)
+    if found is None:
+        return None
+    return [[int(point) for point in loop.split()] for loop in found[1].split(" HOLE ")]
 
 
 def _shape(vertices: Any, faces: Any) -> dict[str, list[float]]:

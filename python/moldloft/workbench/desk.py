@@ -20,6 +20,7 @@ from moldloft.fairing.desk_lines import DeskCurve, DeskResult, fair_line, task
 from moldloft.fairing.desk_source import DeskSource
 from moldloft.fairing.faired import Fairing
 from moldloft.workbench.room import answer_frames
+from moldloft.workbench.sections import sections
 from moldloft.workbench.statements import units
 
 if TYPE_CHECKING:
@@ -145,6 +146,7 @@ class DeskRoom:
         if desk.source.kind != "curves":
             out["views"] = [_polyline(c.after) for c in shown.curves]
             out["extents"] = _extents(shown)
+            out["sections"] = sections(out["views"])
         if request.get("brief"):
             return out
         out["suspects"] = [

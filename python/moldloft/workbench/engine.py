@@ -118,6 +118,12 @@ class Engine:
             await self.end()
             raise EngineLostError(f"no answer within {self._budget:g} s") from None
 
+    def cancel(self) -> None:
+        """Have the request that runs end early; its answer comes as always."""
+        process = self._process
+        if process is not None and process.stdin is not None:
+            process.stdin.write(struct.pack("<I", len(_CANCEL)) + _CANCEL)
+
     def _reading(self) -> asyncio.Task[bytes]:
         reading = asyncio.ensure_future(self._receive())
         # The requester may be gone when the engine ends, as with a stopped server.

@@ -7,7 +7,7 @@ import struct
 from collections.abc import Mapping
 from typing import Any
 
-__all__ = ["MAGIC", "frame_of", "head_of"]
+__all__ = ["MAGIC", "frame_of", "head_of", "without"]
 
 #: The first bytes of a frame.
 MAGIC = b"MLFT"
@@ -51,6 +51,23 @@ def frame_of(head: Mapping[str, Any], files: Mapping[str, bytes]) -> bytes:
         part = {"role": "file", "type": "u8", "offset": len(data), "count": len(content)}
         parts.append({**part, "name": name})
         data += content + bytes(-len(content) % _GRAIN)
-    facts = json.dumps({**head, "files": parts}).encode()
+    return _framed({**head, "files": parts}, bytes(data))
+
+
+def without(frame: bytes, fact: str) -> bytes:
+    """A frame with one fact less.
+
+    Examples
+    --------
+    >>> head_of(without(frame_of({"id": 3, "watched": []}, {}), "watched"))
+    {'id': 3, 'files': []}
+    """
+    (length,) = struct.unpack_from("<I", frame, 8)
+    head = {name: value for name, value in head_of(frame).items() if name != fact}
+    return _framed(head, frame[16 + length + -length % _GRAIN :])
+
+
+def _framed(head: Mapping[str, Any], data: bytes) -> bytes:
+    facts = json.dumps(head).encode()
     words = struct.pack("<4I", int.from_bytes(MAGIC, "little"), _VERSION, len(facts), 0)
-    return words + facts + bytes(-len(facts) % _GRAIN) + bytes(data)
+    return words + facts + bytes(-len(facts) % _GRAIN) + data

@@ -23,7 +23,7 @@ from moldloft.storage import utf8_path
 from moldloft.workbench.draft import Draft
 from moldloft.workbench.drawing import BOARD, DESK, FILES, Drawing
 from moldloft.workbench.engine import Engine, EngineLostError
-from moldloft.workbench.frames import frame_of, head_of
+from moldloft.workbench.frames import frame_of, head_of, without
 from moldloft.workbench.making import shape_functions
 from moldloft.workbench.outbox import Outbox, Send
 from moldloft.workbench.recent import recent_models
@@ -53,6 +53,9 @@ CHANGING = {
     "set", "solve_for", "drag_to", "commit", "reset", "write", "drag_end", "show",
     "add", "delete", "duplicate", "rename_object", "reorder", "text", "text_beside",
 }  # fmt: skip
+
+#: Moves of a hand: numbers of the shape before them are no longer asked for.
+MOVES = {"set", "solve_for", "drag_begin", "drag_to"}
 
 #: Requests about a text, which name its file; that of the model has no name.
 OF_TEXTS = {"push", "pull", "save", "revert"}
@@ -141,6 +144,8 @@ class Hub:
         self._sending: set[asyncio.Task[None]] = set()
         self._dropped: dict[int, str] = {}
         self._served = 0
+        self._running = ""
+        self._given_up = False
 
     @property
     def texts(self) -> list[SharedText]:
@@ -394,16 +399,30 @@ class Hub:
 
     def _ask(self, tab: Tab, kind: str, message: dict[str, Any]) -> None:
         request = {**message, "tab": tab.number}
+        if kind in MOVES:
+            self._give_up_measures()
         if kind in NEWEST:
             for job in self._jobs:
                 if job.kind == kind and job.tab == tab.number:
-                    self._to(tab, {"kind": "superseded", "id": job.request.get("id", 0)})
+                    self._superseded(job)
                     old, new = job.request.get("values"), request.get("values")
                     if kind == "set" and isinstance(old, dict) and isinstance(new, dict):
                         request["values"] = {**old, **new}
                     job.request = request
                     return
         self._queue(_Job(kind, tab.number, request))
+
+    def _give_up_measures(self) -> None:
+        """Numbers that wait or are computed give way to a move of a hand."""
+        for job in [job for job in self._jobs if job.kind == "measure"]:
+            self._jobs.remove(job)
+            self._superseded(job)
+        if self._running == "measure" and not self._given_up:
+            self._given_up = True
+            self.engine.cancel()
+
+    def _superseded(self, job: _Job) -> None:
+        self._to(self.tabs.get(job.tab), {"kind": "superseded", "id": job.request.get("id", 0)})
 
     def _queue(self, job: _Job) -> None:
         if job.kind in OWN | {"sync"} and any(
@@ -461,7 +480,14 @@ class Hub:
         except ValueError as error:
             self.refuse(self.tabs.get(job.tab), request.get("id", 0), f"not a request: {error}")
             return
-        frame = await self.engine.ask(data)
+        self._running, self._given_up = job.kind, False
+        try:
+            frame = await self.engine.ask(data)
+        finally:
+            self._running = ""
+        if self._given_up:
+            # What the page is to know besides is in the frame; the numbers are not.
+            frame = without(frame, "watched")
         if fault := _unread(frame):
             self.refuse(self.tabs.get(job.tab), request.get("id", 0), fault)
         else:

@@ -19,6 +19,14 @@ class BoardHand(Bench):
             self.page.get_by_role("tab", name="Drawing board").click()
         self.page.locator(".board:not([hidden])").wait_for()
 
+    def reload(self) -> None:
+        """The page is loaded again, and its board shown."""
+        self.page.reload()
+        self.page.locator("body[data-state=alive]").wait_for(timeout=30_000)
+        self.page.get_by_role("tab", name="Drawing board").click()
+        self.page.locator(".board:not([hidden])").wait_for()
+        self.settle()
+
     def ready(self) -> None:
         """An empty text has nothing to wait for."""
 

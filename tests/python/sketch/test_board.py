@@ -227,7 +227,9 @@ def test_random_gestures_are_the_text() -> None:
             assert here == anew, (seed, what)
         # What a drag shows meanwhile leaves nothing behind.
         if points := [p[0] for p in here["points"]]:
-            hand.tell("board_drag", move={"point": points[0], "at": [1, 2]})
+            moves = [{"point": p, "at": [k, 2 * k]} for k, p in enumerate(points)]
+            seen = hand.tell("board_drag", moves=moves)["points"]
+            assert [p[1:3] for p in seen] == [[k, 2 * k] for k in range(len(points))]
             assert hand.tell("board_open") == here
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import json
+import math
 import os
 import random
 import signal
@@ -445,6 +446,42 @@ def test_of_many_slider_moves_the_newest_counts(model_file: Callable[..., Path])
         assert len(answered) < 100
 
     workbench(model_file(LINE), play)
+
+
+def test_a_move_ends_what_is_measured(model_file: Callable[..., Path]) -> None:
+    text = "param float r = 1 in [0.5, 2];\nset ball = set(sphere({0, 0, 0}, r));\n"
+    corners = "{-2, -2, -2}, {2, 2, 2}"
+
+    async def play(hub: Hub) -> None:
+        page = Page(hub)
+        await page.ask("open")
+        tab = page.tab
+        await page.ask("watch", expressions=["2*r"])
+        # Seconds of work at the greater depth.
+        deep = f"volume_bracket(ball, {corners}, 8)"
+        await hub.hear(tab, {"kind": "watch", "id": 900, "expressions": [deep]})
+        await page.until(lambda: any(h.get("id") == 900 for h in page.heads), 240)
+        for k in (1, 2):
+            await hub.hear(tab, {"kind": "measure", "id": 900 + k})
+        while hub._running != "measure":
+            await asyncio.sleep(0)
+        await hub.hear(tab, {"kind": "measure", "id": 910})
+        await hub.hear(tab, {"kind": "set", "id": 911, "values": {"r": 1.5}})
+        await page.until(lambda: any(h.get("id") == 911 for h in page.heads), 240)
+        stopped = next(h for h in page.heads if h.get("id") in (901, 902))
+        assert "watched" not in stopped and page.heads[-1]["params"][0]["value"] == 1.5
+        # Those that waited are superseded, not computed for a shape that is gone.
+        waited = {m["id"] for m in page.said if m["kind"] == "superseded"}
+        assert 910 in waited and len(waited & {901, 902, 910}) == 2
+        # What comes after the move is of the shape as it is.
+        await page.ask("watch", expressions=["2*r"])
+        [row] = (await page.ask("measure"))["watched"]
+        assert row["value"] == 3.0 and not row.get("error")
+        less = deep.replace("8)", "6)")
+        low, high = (await page.ask("evaluate", expressions=[less]))["values"][0]["value"]["first"]
+        assert low < 4 / 3 * math.pi * 1.5**3 < high
+
+    workbench(model_file(text), play)
 
 
 # The server.

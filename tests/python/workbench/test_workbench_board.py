@@ -222,10 +222,188 @@ def test_lines_are_duplicated_over_a_picture(board: Callable[..., BoardHand]) ->
     b.until(lambda: float(image.get_attribute("width") or 0) > 1.2 * width)
     b.page.get_by_role("button", name="remove the picture").click()
     assert not image.is_visible() and b.text() == text
+    b.reload()
+    assert not image.is_visible()
     words = {"name": "scan.png", "mimeType": "image/png", "buffer": b"no picture"}
     b.page.get_by_label("picture underneath").set_input_files([words])
     b.page.locator(".status").get_by_text("is no picture").wait_for()
     assert not b.faults
+
+
+def framed(b: BoardHand) -> tuple[float, float, float, float]:
+    """The picture underneath: left, top, width and height on the screen."""
+    box = b.page.locator("image.underlay").bounding_box()
+    assert box
+    return box["x"], box["y"], box["width"], box["height"]
+
+
+def pulled(b: BoardHand, handle: str, by: tuple[float, float]) -> None:
+    box = b.page.locator(f"[data-underlay='{handle}']").bounding_box()
+    assert box
+    x, y = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
+    b.page.mouse.move(x, y)
+    b.page.mouse.down()
+    b.page.mouse.move(x + by[0] / 2, y + by[1] / 2)
+    b.page.mouse.move(x + by[0], y + by[1])
+    b.page.mouse.up()
+
+
+def laid(b: BoardHand) -> None:
+    picture = {"name": "scan.png", "mimeType": "image/png", "buffer": base64.b64decode(PIXEL)}
+    b.page.get_by_label("picture underneath").set_input_files([picture])
+    b.page.get_by_label("strength of the picture").wait_for()
+
+
+def test_a_picture_is_moved_scaled_and_kept(board: Callable[..., BoardHand]) -> None:
+    b = board("SKETCH P\nAXES 345 40 90\nPOINT 1 AT 0 0\n")
+    b.settle()
+    laid(b)
+    grips = b.page.locator("[data-underlay]")
+    assert not grips.first.is_visible()
+    b.key("v")
+    x, y, width, height = framed(b)
+    pulled(b, "move", (-40, 30))
+    assert framed(b) == pytest.approx((x - 40, y + 30, width, height), abs=0.6)
+    # The corner follows, the opposite one stays, and so do the proportions.
+    pulled(b, "right lower", (0.25 * width, 0.25 * height))
+    assert framed(b) == pytest.approx((x - 40, y + 30, 1.25 * width, 1.25 * height), abs=0.6)
+    pulled(b, "left upper", (0.25 * width, 0.25 * height))
+    x, y = x - 40 + 0.25 * width, y + 30 + 0.25 * height
+    assert framed(b) == pytest.approx((x, y, width, height), abs=0.6)
+    # By keys: a pixel, or ten.
+    b.page.locator("[data-underlay='move']").focus()
+    for key in ("ArrowLeft", "Shift+ArrowUp"):
+        b.page.keyboard.press(key)
+    assert framed(b) == pytest.approx((x - 1, y - 10, width, height), abs=0.6)
+    # It goes with the page, and is there again after a reload, as strong as it was.
+    b.page.get_by_label("strength of the picture").fill("0.8")
+    origin, text = b.at(0, 0), b.text()
+    before = [v / width for v in (x - 1 - origin[0], y - 10 - origin[1])]
+    b.reload()
+    image = b.page.locator("image.underlay")
+    b.until(image.is_visible)
+    x, y, width, _ = framed(b)
+    origin = b.at(0, 0)
+    assert [(x - origin[0]) / width, (y - origin[1]) / width] == pytest.approx(before, abs=0.01)
+    assert image.get_attribute("opacity") == "0.8" and b.text() == text
+    assert not b.faults
+
+
+def test_the_axes_of_a_picture_are_set_by_four_clicks(board: Callable[..., BoardHand]) -> None:
+    b = board("SKETCH P\nAXES 345 40 90\nPOINT 1 AT 0 0\nPOINT 2 AT 60 5\nLINE 1 2\n")
+    b.settle()
+    laid(b)
+    b.page.get_by_role("button", name="Axes of the picture").click()
+    ways = {"x": 350.0, "z": 80.0}
+    for axis, degrees in ways.items():
+        if axis == "z":
+            # The second line is along z, not y.
+            b.page.keyboard.press("z")
+        a = math.radians(degrees)
+        b.click(30, 20)
+        # A second end on the first is none.
+        b.click(30, 20)
+        b.click(30 + 120 * math.cos(a), 20 + 120 * math.sin(a))
+    b.settle()
+    found = re.search(r"^AXES ([\d.]+) ([\d.]+) ([\d.]+)$", b.text(), re.M)
+    assert found
+    angles = [float(x) for x in found.groups()]
+    assert angles == pytest.approx([350, 40, 80], abs=0.6), b.text()
+    assert "POINT 3" not in b.text() and len(b.hand("steps().done")) == 1
+    b.key("Control+z")
+    assert "AXES 345 40 90" in b.text()
+    # Escape leaves all as it was.
+    b.page.get_by_role("button", name="Axes of the picture").click()
+    b.click(30, 20)
+    b.key("Escape")
+    b.click(30, 80)
+    b.settle()
+    assert "AXES 345 40 90" in b.text() and b.look()["chain"] == 1
+
+
+def test_the_picture_of_a_section_is_turned(board: Callable[..., BoardHand]) -> None:
+    text = "SKETCH P 2D XZ\nPOINT 1 AT 0 0\n"
+    b = board(text)
+    b.settle()
+    laid(b)
+    b.page.get_by_role("button", name="Axes of the picture").click()
+    # The picture is drawn 6 degrees aslant.
+    for degrees in (6, 96):
+        a = math.radians(degrees)
+        b.click(10, 10)
+        b.click(10 + 150 * math.cos(a), 10 + 150 * math.sin(a))
+    turned = b.page.locator("image.underlay").get_attribute("transform") or ""
+    angle = re.match(r"rotate\(([-\d.]+) ", turned)
+    # Clockwise on the screen.
+    assert angle and float(angle[1]) == pytest.approx(6, abs=0.4), turned
+    assert b.text() == text and not b.faults
+
+
+def cuboid() -> str:
+    """A cube's picture, whose three dimensions are given: 6, 4 and 3."""
+    kept = [row for row in nested().splitlines() if not row.startswith("DIMENSION")]
+    drawn = [row for row in kept if " TYPE O" not in row and not inner(row)]
+    given = ["DIMENSION X 1 2 6", "DIMENSION Y 2 3 4", "DIMENSION Z 1 5 3"]
+    return "\n".join(drawn + given) + "\n"
+
+
+def test_faces_are_traced_one_by_one(board: Callable[..., BoardHand]) -> None:
+    text = cuboid()
+    b = board(text, "cube.skt")
+    b.until(lambda: b.settle()["solid"] and b.look()["solid"]["exact"])
+    b.page.get_by_role("button", name="Trace the faces").click()
+    b.settle()
+    assert b.text() == text + "GENERATE FACES ASK\n"
+    asked = b.page.get_by_role("group", name="face to judge")
+    first = b.look()["drawn"]["asked"]
+    assert len(first) == 1 and len(first[0]) == 4
+    assert asked.get_by_role("status").inner_text() == f"Face {' '.join(map(str, first[0]))}?"
+    assert b.page.locator("path.asked").count() == 1 and b.page.locator("path.run").count() == 4
+    # The first may be run through either way.
+    asked.get_by_role("button", name="Reverse").click()
+    b.settle()
+    assert b.look()["drawn"]["asked"] == [first[0][::-1]]
+    asked.get_by_role("button", name="Reverse").click()
+    b.settle()
+    asked.get_by_role("button", name="Accept").click()
+    b.settle()
+    # Its neighbour may not: the reason is given, and the text stays.
+    before = b.text()
+    second = b.look()["drawn"]["asked"]
+    assert second != first
+    if set(second[0]) & set(first[0]):
+        asked.get_by_role("button", name="Reverse").click()
+        b.page.locator(".status").get_by_text("cannot be reversed").wait_for()
+        assert b.text() == before and b.look()["drawn"]["asked"] == second
+    # Undo asks again about the first.
+    b.key("Control+z")
+    b.until(lambda: b.settle()["drawn"]["asked"] == first)
+    b.key("Control+Shift+z")
+    b.until(lambda: b.settle()["drawn"]["asked"] == second)
+    b.key("Enter")
+    while b.look()["drawn"]["asked"] is not None:
+        asked.get_by_role("button", name="Accept").click()
+        b.settle()
+    state = b.settle()
+    assert not asked.is_visible() and state["drawn"]["faces"] == 6
+    assert b.text().count("ACCEPT") == 6
+    volume = float(b.page.locator(".board-solid").get_attribute("data-volume") or "nan")
+    assert abs(volume) == pytest.approx(72, rel=1e-9)
+    s = Sketch()
+    s.run(b.text())
+    assert abs(s.volume) == pytest.approx(72, rel=1e-9)
+    assert not b.faults
+
+
+def test_a_rejected_face_is_left_out(board: Callable[..., BoardHand]) -> None:
+    b = board(cuboid() + "GENERATE FACES ASK\n", "cube.skt")
+    b.settle()
+    asked = b.page.get_by_role("group", name="face to judge")
+    first = b.look()["drawn"]["asked"]
+    asked.get_by_role("button", name="Reject").click()
+    b.settle()
+    assert b.text().endswith("GENERATE FACES ASK\nREJECT\n")
+    assert b.look()["drawn"]["asked"] not in (None, first)
 
 
 def nested() -> str:

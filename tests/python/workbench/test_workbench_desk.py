@@ -235,15 +235,32 @@ def test_a_hull_in_all_its_views(desk: Callable[..., DeskHand]) -> None:
     state = d.slide(0.7)
     assert state["log"][0] == f"lock {k + 1}" and state["facts"]["list"][k]["locked"]
     assert state["facts"]["views"][k] == held
-    # A waterline is cut, seen, and put back.
-    line = d.page.get_by_label("fairing command")
-    for command in ("cut z 1.3", "put back"):
-        line.fill(command)
-        line.press("Enter")
-        d.settle()
-        if command.startswith("cut"):
-            assert d.page.locator(".desk-view .line.cut").count() == 3
+    # Diagonals, and buttocks that the table has none of, are beside them.
+    assert d.page.locator("[data-view='Diagonals'] .line.section").count() == 5
+    assert d.page.locator("[data-view='Profile'] .line.section").count() == 3
+    # A waterline is cut, seen, and put back, by buttons.
+    bar = d.page.get_by_role("toolbar", name="fairing")
+    back = bar.get_by_role("button", name="Put back")
+    assert back.is_disabled()
+    bar.get_by_role("button", name="Cut…").click()
+    value = d.page.get_by_label("place of the plane")
+    value.fill("one")
+    value.press("Enter")
+    d.page.locator(".status").get_by_text("expected a number").wait_for()
+    value.fill("1.3")
+    d.page.get_by_role("button", name="Cut", exact=True).click()
+    d.until(lambda: d.look()["log"][-1] == "cut z 1.3")
+    assert d.page.locator(".desk-view .line.cut").count() == 3 and not value.is_visible()
+    back.click()
+    d.settle()
+    assert d.look()["log"][-1] == "put back"
     assert d.look()["facts"]["list"][-1]["name"] == "z = 1.3"
+    bar.get_by_role("button", name="Cut…").click()
+    d.page.get_by_label("plane", exact=True).select_option("Diagonal, y + z =")
+    value.fill("2")
+    value.press("Enter")
+    d.until(lambda: d.look()["log"][-1] == "cut 0,1,1:2")
+    d.key("Control+z")
     agrees(d)
     d.page.get_by_role("button", name="Apply").click()
     d.settle()
@@ -259,6 +276,65 @@ def test_a_hull_in_all_its_views(desk: Callable[..., DeskHand]) -> None:
         d.page.get_by_label("save").select_option("csv")
     saved = found.value.path().read_text()
     assert saved.splitlines()[0] == hull().splitlines()[0] and saved != hull()
+    assert not d.faults
+
+
+def test_the_desk_is_in_the_one_history(desk: Callable[..., DeskHand]) -> None:
+    d = desk()
+    page = d.page
+
+    def done() -> list[str]:
+        return list(d.hand("steps().done"))
+
+    first = d.table("line.csv", csv(rail()[:20]))
+    d.key("ArrowRight", "f")
+    page.get_by_role("textbox", name="program").focus()
+    page.keyboard.press("Control+End")
+    page.keyboard.type("// a note")
+    d.hand("settled()")
+    d.key("g")
+    names = done()
+    assert [names[0], names[1], names[-1]] == [
+        "Desk: Open line.csv", "Desk: fix 2", "Desk: goal fairest"
+    ]  # fmt: skip
+    assert len(names) == 4 and names[2].startswith("Typing")
+    # From another focus, one after the other: the goal, the typing, the mark.
+    page.get_by_role("textbox", name="program").focus()
+    page.keyboard.press("Control+z")
+    d.until(lambda: d.settle()["facts"]["goal"] == "near")
+    assert "a note" in d.text() and d.look()["log"] == ["fix 2"]
+    page.get_by_role("button", name="undo").click()
+    d.until(lambda: d.text() == MODEL)
+    assert d.look()["log"] == ["fix 2"]
+    d.key("Control+z")
+    assert d.look()["log"] == [] and d.look()["facts"]["list"] == first["facts"]["list"]
+    # Another table takes its place; the list of steps returns to the first.
+    page.get_by_role("toolbar", name="fairing").get_by_role("button", name="Open").click()
+    page.get_by_role("button", name="Back to line.csv").click()
+    assert d.look()["facts"]["title"] == "line.csv" and done() == ["Desk: Open line.csv"]
+    page.get_by_role("toolbar", name="fairing").get_by_role("button", name="Open").click()
+    d.table("other.csv", csv(rail()[5:25]))
+    d.until(lambda: d.settle()["facts"]["title"] == "other.csv")
+    d.key("k")
+    assert done()[1:] == ["Desk: Open other.csv", "Desk: knuckle 1"]
+    page.get_by_role("button", name="history").click()
+    page.get_by_role("group", name="steps").get_by_role(
+        "button", name="Desk: Open line.csv"
+    ).click()
+    d.until(lambda: d.settle()["facts"]["title"] == "line.csv")
+    assert d.look()["facts"]["detail"]["data"] == first["facts"]["detail"]["data"]
+    page.keyboard.press("Escape")
+    # Then nothing is open, and forth again all is.
+    d.key("Control+z")
+    page.get_by_role("button", name="undo").focus()
+    d.until(lambda: d.look()["session"] is None)
+    assert page.locator(".desk-start").is_visible()
+    for _ in range(3):
+        page.keyboard.press("Control+Shift+z")
+    d.until(lambda: d.look()["log"] == ["knuckle 1"])
+    state = d.settle()
+    assert state["facts"]["title"] == "other.csv" and d.text() == MODEL
+    agrees(d)
     assert not d.faults
 
 
@@ -333,9 +409,17 @@ def test_random_acts(desk: Callable[..., DeskHand]) -> None:
 def test_a_table_becomes_panels_by_the_pointer_alone(desk: Callable[..., DeskHand]) -> None:
     d = desk('Model info(symmetry = "y", units = "m");\n')
     page = d.page
-    state = d.table("hull.csv", hull(0.002))
+    # Half stations at the ends, and one reading that is off by 15 cm.
+    halves, wrong = (1.0, 19.0), (8.0, 3, 0.15)
+    d.table("hull.csv", hull(0.002, halves, wrong))
+    stations = sorted([*range(0, 21, 2), *halves])
+    suspects = page.locator(".desk-suspects [data-point]")
+    planted = suspects.filter(has_text="Reading: (8, 1.81")
+    assert suspects.count() == planted.count() == 1, suspects.all_inner_texts()
+    planted.get_by_role("button", name="Accept").click()
+    state = d.settle()
     # Fair within the scatter that the table has.
-    assert [line["inflections"][1] for line in state["facts"]["list"]] == [0] * 18
+    assert [line["inflections"][1] for line in state["facts"]["list"]] == [0] * 20
     page.get_by_role("button", name="Apply").click()
     d.settle()
     # A surface through the stations, picked in the list of objects.
@@ -343,8 +427,8 @@ def test_a_table_becomes_panels_by_the_pointer_alone(desk: Callable[..., DeskHan
     page.get_by_role("button", name="Add an object (Shift+A)").click()
     panel = page.get_by_role("region", name="add an object")
     panel.get_by_role("button").filter(has_text="CLoftSurf").first.click()
-    for station in range(0, 21, 2):
-        page.get_by_role("treeitem", name=f"hull_station_{station} NetCurve").click()
+    for station in stations:
+        page.get_by_role("treeitem", name=f"hull_station_{station:g} NetCurve").click()
     panel.get_by_role("button", name="Add", exact=True).click()
     d.until(lambda: any(i["kind"] == "patch" for i in d.hand("items()")))
     page.get_by_role("button", name="Export").click()

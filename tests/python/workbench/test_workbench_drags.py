@@ -39,7 +39,7 @@ CHOSEN = EXAMPLES if SOAK else random.Random(3).sample(EXAMPLES, 3)
 #: Views by their keys; O turns perspective on and off.
 VIEWS = ["1", "2", "3", "4"]
 #: Picture points that a place may be beside the pointer.
-BESIDE = 3.0
+BESIDE = 2.0
 #: A hand that moves less than that clicks.
 CLICK = 6.0
 

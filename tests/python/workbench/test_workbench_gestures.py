@@ -213,6 +213,48 @@ def test_what_own_numbers_cannot_follow_a_parameter_does(bench: Callable[..., Be
     assert b.text() == HALF
 
 
+def test_chosen_parameters_share_a_motion(bench: Callable[..., Bench]) -> None:
+    text = (
+        "param float beam = 4 in [0, 8];\nparam float lift = 1 in [0, 8];\n"
+        "param float rise = 1 in [0, 8];\n"
+        "AbsPoint P(0, 0, beam / 2 + lift + rise);\nAbsPoint Q(0, 4, 8);\nAbsPoint R(4, 0, 0);\n"
+    )
+    b = opened(bench, text)
+    b.page.get_by_role("application", name="model").focus()
+    b.page.keyboard.press("4")
+    b.page.mouse.click(*b.hand("project('P')"))
+    b.page.keyboard.press("g")
+    for _ in range(3):
+        b.page.keyboard.press("Shift+ArrowUp")
+    offered = b.page.get_by_role("group", name="what to move")
+    b.until(lambda: offered.is_visible())
+    on = offered.get_by_role("button", pressed=True)
+    [alone] = on.all_inner_texts()
+    others = sorted({"beam", "lift", "rise"} - {alone})
+    before = b.param(others[0])
+    # A second chip: both pay, each by what moves the point and by its range.
+    offered.get_by_role("button", name=others[0], exact=True).click()
+    b.until(lambda: sorted(on.all_inner_texts()) == sorted([alone, others[0]]))
+    b.until(lambda: b.param(others[0]) > before)
+    # By keys: Tab to the chips, Space takes the first from them, arrows move on.
+    b.page.get_by_role("application", name="model").focus()
+    b.page.keyboard.press("Tab")
+    while b.page.evaluate("() => document.activeElement.textContent") != alone:
+        b.page.keyboard.press("Tab")
+    b.page.keyboard.press("Space")
+    b.until(lambda: on.all_inner_texts() == [others[0]])
+    start = {"beam": 4.0, "lift": 1.0, "rise": 1.0}
+    b.until(lambda: b.param(alone) == start[alone])
+    b.page.keyboard.press("ArrowUp")
+    b.page.keyboard.press("Enter")
+    b.until(lambda: b.text() != text)
+    b.hand("settled()")
+    assert b.hand("steps().done") == ["Drag P"]
+    assert b.param(others[0]) > start[others[0]]
+    assert all(b.param(n) == start[n] for n in (alone, others[1]))
+    assert not b.faults
+
+
 def test_a_number_along_the_line_of_sight_stays(bench: Callable[..., Bench]) -> None:
     text = "AbsPoint Q(0, -2, -2);\nAbsPoint R(4, 4, 4);\nAbsPoint P(1, R.y + Q.y, R.z + Q.z);\n"
     b = opened(bench, text)

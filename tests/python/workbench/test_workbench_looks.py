@@ -1,4 +1,4 @@
-"""First views of examples at four sizes in both themes, and what screen readers announce.
+"""First views of examples at five sizes in both themes, and what screen readers announce.
 
 Under `MOLDLOFT_SOAK` all examples are drawn into the folder `MOLDLOFT_LOOKS`, to be looked at;
 in the ordinary run one.
@@ -23,7 +23,10 @@ pytestmark = needs_page
 
 SOAK = os.environ.get("MOLDLOFT_SOAK") == "1"
 
-SIZES = {"wide": (1920, 1080), "small": (1280, 720), "tablet": (820, 1180), "phone": (390, 844)}
+SIZES = {
+    "wide": (1920, 1080), "small": (1280, 720), "tablet": (820, 1180), "phone": (390, 844),
+    "least": (360, 740),
+}  # fmt: skip
 EXAMPLES = [
     "sailboat/hull.sdl", "sailboat/yacht.sdl", "propeller/propeller.sdl", "wing/wing.sdl",
     "platform/platform.sdl", "submarine/submarine.sdl", "missile/finned.sdl",

@@ -26,12 +26,15 @@ def test_a_slider_moves_the_model_and_then_the_text(bench: Callable[..., Bench])
     b = bench()
     before = b.hand("positions('hull')")
     slider = b.page.get_by_role("slider", name="beam", exact=True)
+    # A factor has no unit, nor is that of another parameter known.
+    assert 'units = "ft"' in HULL and slider.get_attribute("aria-valuetext") == "10.0568"
     slider.focus()
     b.page.keyboard.press("PageUp")
     b.until(lambda: b.hand("positions('hull')") != before)
     b.until(lambda: "beam = 10.0568" not in b.text())
     value = float(re.search(r"beam = ([\d.]+) in", b.text())[1])
     assert value == pytest.approx(10.0568 + 0.7, abs=0.01) and b.param("beam") == value
+    assert float(slider.get_attribute("aria-valuetext") or "") == value
     # One step of the history takes it back, in the text and in the model.
     b.page.get_by_role("textbox", name="program").focus()
     b.page.keyboard.press("Control+z")
@@ -406,6 +409,8 @@ def test_section_areas_follow(bench: Callable[..., Bench]) -> None:
     b.page.get_by_role("img", name="section areas").wait_for()
     label = b.page.get_by_role("img", name="section areas").get_attribute("aria-label")
     slider = b.page.get_by_role("slider", name="beam", exact=True)
+    # A factor has no unit, nor is that of another parameter known.
+    assert 'units = "ft"' in HULL and slider.get_attribute("aria-valuetext") == "10.0568"
     slider.focus()
     b.page.keyboard.press("PageUp")
     b.until(

@@ -51,6 +51,18 @@ def prism(depth: float, *outline: tuple[float, float]) -> Part:
     )
 
 
+def pierced(outer: Part, *hole: tuple[float, float]) -> Part:
+    """A prism with a hole through all of it, an outline in x and z."""
+    depth = max(y for _, y, _ in outer.corners)
+    inner, n = prism(depth, *hole), len(outer.corners)
+    return Part(
+        outer.corners + inner.corners,
+        outer.chains + [[k + n for k in chain] for chain in inner.chains],
+        outer.strokes + [(p + n, q + n) for p, q in inner.strokes],
+        outer.volume - inner.volume,
+    )
+
+
 def hipped(length: float, width: float, wall: float, hip: float, rise: float) -> Part:
     """A house whose roof falls to all four sides, as steep at the ends as its hips are long."""
     base = [(0.0, 0.0), (length, 0.0), (length, width), (0.0, width)]
@@ -94,7 +106,12 @@ PARTS = {
     "saddle": prism(14, (0, 0), (36, 0), (36, 12), (28, 12), (23, 5), (13, 5), (8, 12), (0, 12)),
     "hopper": prism(10, (8, 0), (14, 0), (22, 11), (22, 17), (0, 17), (0, 11)),
     "retaining": prism(40, (0, 0), (19, 0), (19, 3), (8, 3), (6, 25), (3, 25), (3, 3), (0, 3)),
-}
+    # examples/sketch/lock_wall.skt
+    "lock wall": pierced(
+        prism(35, (0, 0), (42, 0), (42, 8), (30, 8), (30, 30), (14, 52), (14, 60), (0, 60)),
+        (6, 6), (18, 6), (18, 20), (6, 20),
+    ),
+}  # fmt: skip
 CHOSEN = sorted(PARTS) if SOAK else ["bracket"]
 
 #: Directions of the axes on the page, in degrees.
@@ -202,6 +219,16 @@ def test_a_part_is_drawn_and_dimensioned(name: str, board: BoardHand) -> None:
             b.click(*away(at[p], at[q], others))
             b.key(KEYS[right])
             assert b.type_of(p, q) == right, b.text()
+    # The faces of a hole are in the planes of those around it: a click on what is proposed.
+    aligned = b.page.get_by_role("log", name="doubts and contradictions").get_by_role(
+        "button", name="ALIGN"
+    )
+    for _ in range(6):
+        if not aligned.count():
+            break
+        aligned.first.click()
+        b.events += 1
+        b.settle()
     b.dimension_all({k: part.corners[j] for k, j in corner.items()})
     state = b.settle()
     assert state["solid"]["exact"], b.text()

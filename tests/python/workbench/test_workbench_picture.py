@@ -91,6 +91,34 @@ def test_a_number_is_typed_and_parameters_pay(bench: Callable[..., Bench]) -> No
     assert b.text() == SIDES and not b.faults
 
 
+def test_weights_say_who_pays(bench: Callable[..., Bench]) -> None:
+    b = bench(SIDES.replace("4 in [1, 10]", "3 in [1, 10]"), "sides.sdl")
+    watch(b, "a + b")
+    start = b.text()
+    field = b.page.get_by_role("group", name="give a value").get_by_label("weight of a")
+    b.page.get_by_role("button", name="give a + b a value").click()
+    assert field.input_value() == "1"
+    # Least (2 (a - 3))² + (b - 3)² on a + b = 8: 0.4 and 1.6.
+    for weight, wanted in (("2", (3.4, 4.6)), ("-1", (3.4, 4.6)), ("1", (4.0, 4.0))):
+        field.fill(weight)
+        field.press("Tab")
+        if weight == "-1":
+            b.page.locator(".status").get_by_text("expected a weight above 0").wait_for()
+            assert field.input_value() == "2"
+        value = b.page.get_by_label("value of a + b")
+        value.fill("8")
+        value.press("Enter")
+        b.until(lambda: b.text() != start)
+        b.hand("settled()")
+        assert [b.param("a"), b.param("b")] == pytest.approx(wanted, abs=1e-6)
+        b.page.keyboard.press("Escape")
+        b.page.get_by_role("application", name="model").focus()
+        b.page.keyboard.press("Control+z")
+        b.until(lambda: b.text() == start)
+        b.page.get_by_role("button", name="give a + b a value").click()
+    assert not b.faults
+
+
 def test_a_number_is_dragged(bench: Callable[..., Bench]) -> None:
     b = bench(SIDES, "sides.sdl")
     watch(b, "a*b")
