@@ -104,6 +104,33 @@ def test_all_that_the_tests_install_is_locked_with_hashes() -> None:
     assert wanted and {named(line) for line in wanted} <= locked
 
 
+def test_a_release_builds_by_the_locked_maturin(monkeypatch: pytest.MonkeyPatch) -> None:
+    release = runpy.run_path(str(ROOT / "tools" / "release.py"))
+    maturin = release["maturin"]
+    commands: list[list[str]] = []
+    names = maturin.__globals__
+    monkeypatch.setitem(names, "run", lambda *words: commands.append([str(w) for w in words]))
+    monkeypatch.setattr(names["importlib"].util, "find_spec", lambda name: None)
+    monkeypatch.setattr(names["venv"], "create", lambda *_, **__: None)
+    python = maturin()[0]
+    locked = str(ROOT / "requirements" / "build.txt")
+    command = [python, "-m", "pip", "install", "--quiet", "--require-hashes", "--requirement"]
+    assert commands == [[*command, locked]]
+
+
+def test_docs_name_the_crates_of_the_nightly_checks() -> None:
+    jobs = read(ROOT / ".github" / "workflows" / "deep.yml")["jobs"]
+    text = (ROOT / "docs" / "soak.md").read_text(encoding="utf-8")
+    for job, name in (("miri", "Miri"), ("thread-sanitizer", "ThreadSanitizer")):
+        command = next(
+            step["run"] for step in jobs[job]["steps"] if "cargo " in step.get("run", "")
+        )
+        listed = re.search(rf"{name} \((?:tests of )?([^)]*)\)", text)
+        assert listed, name
+        assert re.findall(r"`(\w+)`", listed[1]) == re.findall(r"-p moldloft-(\w+)", command)
+        assert re.search(rf"\| {name}.*, last run on \d+ \w+ 20\d\d: ", text), name
+
+
 def test_the_recipe_needs_what_the_package_needs() -> None:
     recipe = read(ROOT / "conda" / "recipe.yaml")
     needs = [line for line in requires("moldloft") or [] if "extra" not in line]
