@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from moldloft.budget import limited
 from moldloft.storage import read_text
 from moldloft.study.definition import Input, Study, StudyError
 from moldloft.study.extras import needed
@@ -91,7 +92,7 @@ def points(study: Study, model: Model) -> Floats:
     """
     method = study.plan.method
     if method == "table":
-        return _table(study)
+        return _table(Path(study.plan.file), study)
     box = ranges(study, model)
     made: Floats
     if method == "grid":
@@ -227,8 +228,8 @@ def _sobol(qmc: Any, size: int, count: int, seed: int) -> Floats:
     return found
 
 
-def _table(study: Study) -> Floats:
-    place = Path(study.plan.file)
+@limited
+def _table(place: Path, study: Study) -> Floats:
     rows = list(csv.reader(io.StringIO(read_text(place))))
     rows = [row for row in rows if row and not row[0].lstrip().startswith("#")]
     if not rows:
