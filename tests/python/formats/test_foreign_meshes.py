@@ -632,3 +632,21 @@ def test_commands_take_the_unit_of_a_mesh(
     capsys.readouterr()
     assert main(["hydro", str(program), "--file-units", "mm"]) == 1
     assert "--file-units is the unit of a mesh file" in capsys.readouterr().err
+
+
+def test_the_comparison_with_trimesh_sees_differences(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    import runpy
+
+    pytest.importorskip("trimesh")
+    compare = runpy.run_path(str(Path(__file__).parents[2] / "mesh_twins.py"))["main"]
+    model = moldloft.loads(BALL)
+    for ending in ("stl", "glb", "obj", "ply", "off"):
+        model.write(tmp_path / f"ball.{ending}")
+    (tmp_path / "bad.off").write_text("OFF\n3 1 0\n0 0\n")
+    assert compare([tmp_path]) == 0
+    assert capsys.readouterr().out.count("the same") == 5
+    monkeypatch.setitem(compare.__globals__, "ours", lambda path: (1, 1.0, 1.0))
+    assert compare([tmp_path]) == 1
+    assert "DIFFERS" in capsys.readouterr().out
