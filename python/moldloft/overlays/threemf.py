@@ -11,7 +11,7 @@ import zipfile
 import zlib
 from collections.abc import Iterator
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from typing import IO, TYPE_CHECKING
 from xml.parsers import expat
 
 import numpy as np
@@ -159,13 +159,14 @@ class _Package:
                 found.append(words.get("Target", ""))
 
         if "_rels/.rels" in self._names:
-            _parsed("_rels/.rels", self._read("_rels/.rels"), element)
+            self._parse("_rels/.rels", element)
         path = _whole_path(found[0] if found else "3D/3dmodel.model")
         if path[1:].lower() not in self._names:
             raise FileError(f"not a 3MF file: it contains no `{path[1:]}`")
         return path
 
-    def _read(self, path: str) -> bytes:
+    def _parse(self, path: str, element: Callable[[str, Mapping[str, str]], None]) -> None:
+        """Calls a function for each element of a file, which is unfolded a piece at a time."""
         name = self._names.get(path.lstrip("/").lower())
         if name is None:
             raise FileError(f"`{path}` is missing in it")
@@ -177,16 +178,18 @@ class _Package:
                 f"{allowed / 2**30:.3g} GiB of memory that are allowed"
             )
         try:
-            return self._files.read(name)
+            with self._files.open(name) as file:
+                _parsed(path, file, element)
         except (zipfile.BadZipFile, zlib.error, RuntimeError, NotImplementedError) as error:
             raise FileError(f"`{path}` in it cannot be unfolded: {error}") from None
-        except (EOFError, OSError, ValueError) as error:
+        except (EOFError, OSError) as error:
             raise FileError(f"`{path}` in it is cut short: {error}") from None
 
     def _part(self, path: str) -> _Part:
         if path not in self._parts:
-            reader = _Reader(path)
-            reader.read(self._read(path))
+            reader = _Reader()
+            self._parse(path, reader.element)
+            reader.check()
             self._parts[path] = reader.part
         return self._parts[path]
 
@@ -230,13 +233,12 @@ _DEEPEST = 50
 class _Reader:
     """Reads a file of the package, element by element."""
 
-    def __init__(self, path: str) -> None:
+    def __init__(self) -> None:
         self.part = _Part()
-        self._path = path
         self._now: _Thing | None = None
 
-    def read(self, data: bytes) -> None:
-        _parsed(self._path, data, self._element)
+    def check(self) -> None:
+        """Refuses faces with vertex numbers that do not exist."""
         for number, thing in self.part.things.items():
             count = len(thing.points) // 3
             corners = thing.corners
@@ -245,7 +247,8 @@ class _Reader:
                     f"object {number}: a face has a vertex number beyond the {count} vertices"
                 )
 
-    def _element(self, tag: str, words: Mapping[str, str]) -> None:
+    def element(self, tag: str, words: Mapping[str, str]) -> None:
+        """Takes an element of the file."""
         now = self._now
         if tag == "vertex" and now is not None:
             now.points += (float(words["x"]), float(words["y"]), float(words["z"]))
@@ -287,7 +290,7 @@ def _whole_path(path: str) -> str:
     return posixpath.normpath("/" + path.lstrip("/"))
 
 
-def _parsed(path: str, data: bytes, element: Callable[[str, Mapping[str, str]], None]) -> None:
+def _parsed(path: str, file: IO[bytes], element: Callable[[str, Mapping[str, str]], None]) -> None:
     """Calls a function with local name and attributes of each element; errors have the line."""
     parser = expat.ParserCreate(namespace_separator=" ")
     parser.buffer_text = True
@@ -313,7 +316,7 @@ def _parsed(path: str, data: bytes, element: Callable[[str, Mapping[str, str]], 
     parser.EntityDeclHandler = entity
     parser.StartElementHandler = start
     try:
-        parser.Parse(data, True)
+        parser.ParseFile(file)
     except expat.ExpatError as error:
         raise FileError(f"`{path}` is not well-formed: {error}") from None
     except KeyError as error:
