@@ -9,9 +9,12 @@ on no package index.
 
 from __future__ import annotations
 
+import subprocess
+import sys
 import time
 from collections.abc import Callable
 from functools import partial
+from pathlib import Path
 
 import numpy as np
 
@@ -171,12 +174,49 @@ def beside_jax(divisions: int, net: np.ndarray) -> None:
     )
 
 
+def resident(word: str) -> int:
+    """Bytes of memory of this process: `VmRSS`, or `VmHWM` since it was last reset (Linux)."""
+    status = Path("/proc/self/status").read_text(encoding="utf-8")
+    return int(status.split(f"{word}:")[1].split()[0]) << 10
+
+
+def many(divisions: int) -> None:
+    """Prints time and memory of reverse mode by 10 080 coordinates, of weights on the mesh."""
+    for kind in "BC":
+        m = hull(kind, points(60, 56), divisions)
+        names = [name for name in m.literals if name.startswith("P")]
+        values = [(name, m.eval(name)) for name in names]
+        count = len(m.mesh().vertices)
+        given = [("mesh", np.random.default_rng(0).normal(size=(1, 3 * count)))]
+
+        def evaluate(m: moldloft.Model = m, values: list[tuple[str, float]] = values) -> None:
+            m._document.set([(name, x + 1e-9) for name, x in values])
+            m.mesh().vertices  # noqa: B018
+            m._document.set(values)
+
+        once = least(evaluate) / 2
+        back = least(partial(_core.vjp, m._document, given, names, "reverse"))
+        text = f"{kind} 60 x 56, {len(names)} inputs, {count} vertices: evaluation {once * 1e3:.2f}"
+        text += f" ms, reverse {back * 1e3:.2f} ms = {back / once:.1f} evaluations"
+        if sys.platform == "linux":
+            Path("/proc/self/clear_refs").write_text("5", encoding="utf-8")
+            before = resident("VmRSS")
+            _core.vjp(m._document, given, names, "reverse")
+            text += f", {(resident('VmHWM') - before) / count:.0f} bytes a vertex"
+        print(text, flush=True)
+
+
 def main() -> None:
+    if sys.argv[1:] == ["many"]:
+        many(100)
+        return
     net = points(14, 25)
     for divisions in (40, 100):
         for kind in "BC":
             compared(kind, divisions, net)
     beside_jax(40, net)
+    # Memory in a process of its own: freed pages would be taken first.
+    subprocess.run([sys.executable, __file__, "many"], check=True)
 
 
 if __name__ == "__main__":

@@ -19,7 +19,7 @@ from pathlib import Path
 
 from moldloft import study
 
-sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "python"))
+sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "python" / "helpers"))
 from study_campaign import by_dask, killed, written
 
 

@@ -55,6 +55,15 @@ STUDIES = {
         "platform/platform.sdl",
         {"leg_radius": 7, "pontoon_radius": 4.5, "spacing": 90, "draft": 26.3},
     ),
+    "study-canoe": (
+        "studies/canoe.sdl",
+        {
+            **{"B2.y": 0.75, "B2.z": 0.419, "B3.y": 0.448, "B3.z": -0.5426, "B4.z": -0.5184},
+            **{"C2.y": 1.5569, "C2.z": 0, "C3.y": 1.3, "C3.z": -0.75, "C4.z": -0.85},
+            **{"D2.y": 1.2, "D2.z": 0.5, "D3.y": 0.8, "D3.z": -0.15, "D4.z": -0.4338},
+            **{"A3.x": 0.4, "A4.z": -0.2, "E3.y": 0.5, "E3.z": 0.35, "E4.z": 0.05},
+        },
+    ),
 }
 
 #: Variables of the deformed hull.
@@ -87,6 +96,35 @@ def deformed() -> bytes:
 
     with tempfile.TemporaryDirectory() as folder:
         return beside(deformation(Path(folder)).model(), DEFORMED)
+
+
+def motions() -> bytes:
+    """Heave and surge of the platform by the period of the waves, by Capytaine."""
+    from matplotlib import pyplot
+
+    sys.path.insert(0, str(EXAMPLES / "studies"))
+    import waves
+    from heave import coarse
+
+    platform = moldloft.load(EXAMPLES / "platform/platform.sdl")
+    radius, periods = 0.45 * platform["spacing"], [6 + 0.5 * k for k in range(49)]
+    found = waves.operators(
+        coarse(platform.text),
+        periods,
+        heading=0.0,
+        centre=(0, 0, -0.5 * platform["draft"]),
+        gyration=(radius, radius, radius),
+    )
+    figure, axes = pyplot.subplots(figsize=(7, 3.2), dpi=110, layout="constrained")
+    for dof in ("Heave", "Surge"):
+        axes.plot(periods, abs(found[dof]), label=dof.lower())
+    axes.set(xlabel="period of the waves in s", ylabel="amplitude in m/m", ylim=(0, 3))
+    axes.grid(alpha=0.3)
+    axes.legend()
+    out = io.BytesIO()
+    figure.savefig(out, format="png", metadata={"Software": None})
+    pyplot.close(figure)
+    return out.getvalue()
 
 
 def beside(model: moldloft.Model, changed: dict[str, float]) -> bytes:
@@ -158,7 +196,15 @@ def dragged() -> bytes:
 
 def main() -> None:
     """Draws the pictures that are named, or all."""
-    named = sys.argv[1:] or [*MODELS, *PROGRAMS, *PLOTS, *STUDIES, "deformation", "drag"]
+    named = sys.argv[1:] or [
+        *MODELS,
+        *PROGRAMS,
+        *PLOTS,
+        *STUDIES,
+        "study-waves",
+        "deformation",
+        "drag",
+    ]
     for name in named:
         if name in MODELS:
             place, size = MODELS[name]
@@ -169,6 +215,8 @@ def main() -> None:
         elif name in STUDIES:
             place, values = STUDIES[name]
             data = beside(moldloft.load(EXAMPLES / place), values)
+        elif name == "study-waves":
+            data = motions()
         elif name == "deformation":
             data = deformed()
         elif name == "drag":

@@ -85,10 +85,7 @@ def run(name: str, folder: Path, seconds: int) -> tuple[str, int, str]:
     for number, path in enumerate(sources if pattern else []):
         if path.is_file() and path.stat().st_size <= 16_384:
             shutil.copy(path, seeds / f"{number}-{path.name}")
-    command = [str(folder / name), str(out), str(seeds)]
-    kept = ROOT / "fuzz" / "corpus" / name
-    if kept.is_dir():
-        command.append(str(kept))
+    command = [str(folder / name), str(out), str(seeds), str(ROOT / "fuzz" / "corpus" / name)]
     if dictionary == "sdl":
         path = out.parent / "sdl.dict"
         path.write_text(words(), encoding="utf-8")

@@ -206,7 +206,8 @@ def maturin() -> list[str]:
     python = tools / ("Scripts" if WINDOWS else "bin") / f"python{EXE}"
     if not python.is_file():
         venv.create(tools, with_pip=True)
-    run(python, "-m", "pip", "install", "--quiet", "maturin>=1.10,<2")
+    locked = ROOT / "requirements" / "build.txt"
+    run(python, "-m", "pip", "install", "--quiet", "--require-hashes", "--requirement", locked)
     return [str(python), "-m", "maturin"]
 
 

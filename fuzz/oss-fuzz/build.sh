@@ -1,13 +1,18 @@
 #!/bin/bash -eu
-# Every target of fuzz/ with its kept corpus and its dictionary.
+# Every target of fuzz/ with its kept corpus, files of the repository that it reads, and its dictionary.
 cd "$SRC/moldloft"
 cargo fuzz build -O --debug-assertions
 for source in fuzz/fuzz_targets/*.rs; do
     name=$(basename "$source" .rs)
     cp "fuzz/target/x86_64-unknown-linux-gnu/release/$name" "$OUT/"
-    if [ -d "fuzz/corpus/$name" ]; then
-        zip -jqr "$OUT/${name}_seed_corpus.zip" "fuzz/corpus/$name"
-    fi
+    zip -jqr "$OUT/${name}_seed_corpus.zip" "fuzz/corpus/$name"
+    case $name in
+        document | sdl_*) ending=sdl ;;
+        model_file) ending=ms2 ;;
+        sketch) ending=skt ;;
+        *) continue ;;
+    esac
+    find examples tests/corpus -name "*.$ending" -size -17k -print | zip -jq "$OUT/${name}_seed_corpus.zip" -@
 done
 cp fuzz/dictionaries/sketch.dict "$OUT/sketch.dict"
 # Names of kinds and functions, from the stubs.

@@ -8,16 +8,19 @@ import os
 import re
 import threading
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from functools import wraps
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple, TypeVar, cast
 
 from moldloft import _core
 from moldloft.arguments import explain
 from moldloft.errors import FileError, ModelError
 
-__all__ = ["Limits", "limits", "parsed", "within_limits"]
+__all__ = ["Limits", "limited", "limits", "parsed", "within_limits"]
+
+F = TypeVar("F", bound=Callable[..., Any])
 
 _UNITS = {"": 1, "k": 1 << 10, "m": 1 << 20, "g": 1 << 30, "t": 1 << 40}
 
@@ -127,18 +130,27 @@ def parsed(text: str) -> dict[str, str | int | float]:
 
 
 @contextmanager
-def within_limits() -> Iterator[None]:
+def within_limits(subject: str = "") -> Iterator[None]:
     """Apply the limits of time and memory to Python code, such as readers of foreign files.
 
     The call ends as by Ctrl-C, including its calls of other libraries, except inside compiled code.
-    Memory is the growth of the process, where the system reports it.
+    Memory is the growth of the process, where the system reports it. Within such a call another
+    one changes nothing.
+
+    Parameters
+    ----------
+    subject
+        The work, for the message.
 
     Raises
     ------
     FileError
         If the work inside takes more than is allowed.
     """
-    watch = _Watch(limits())
+    if getattr(_watched, "by", None) is not None:
+        yield
+        return
+    watch = _watched.by = _Watch(limits())
     watch.start()
     try:
         try:
@@ -147,7 +159,30 @@ def within_limits() -> Iterator[None]:
             watch.end()
     except _OverspentError:
         watch.end()
-        raise FileError(watch.reason) from None
+        raise FileError(f"{subject}: {watch.reason}" if subject else watch.reason) from None
+    finally:
+        _watched.by = None
+
+
+def limited(read: F) -> F:
+    """A reader of a file, its path first, that keeps the limits by :func:`within_limits`.
+
+    Parameters
+    ----------
+    read
+        The reader.
+    """
+
+    @wraps(read)
+    def within(path: Any, *arguments: Any, **options: Any) -> Any:
+        with within_limits(f"cannot read `{path}`"):
+            return read(path, *arguments, **options)
+
+    return cast(F, within)
+
+
+_watched = threading.local()
+"""The watch of each thread."""
 
 
 class _OverspentError(BaseException):

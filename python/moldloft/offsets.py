@@ -23,6 +23,7 @@ from itertools import pairwise
 from typing import TYPE_CHECKING
 
 from moldloft.arguments import explain
+from moldloft.budget import limited
 from moldloft.errors import Error
 from moldloft.storage import read_text
 
@@ -169,6 +170,7 @@ class Offsets:
         return "\n".join(lines) + "\n"
 
 
+@limited
 def read(path: str | os.PathLike[str]) -> Offsets:
     """The table of a file.
 

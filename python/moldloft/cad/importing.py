@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from moldloft.arguments import explain
+from moldloft.budget import within_limits
 from moldloft.cad.apart import read
 from moldloft.cad.divisions import divisions
 from moldloft.cad.faces import Imported, ImportedFace, align
@@ -72,11 +73,12 @@ def imported(path: str | os.PathLike[str], *, units: str = "m") -> tuple[str, Mo
     if path.suffix.lower() not in ENDINGS:
         raise Error(f"`{path}` is no CAD file by its ending; expected one of: {', '.join(ENDINGS)}")
     found = read(path, UNITS[units])
-    align(found.faces)
-    if any(face.colour is not None and not _is_own(face.colour) for face in found.faces):
-        found.remarks.append("colours become the nearest of the sixteen of a model")
-    # Joins may add remarks.
-    text, model = _loadable(found, path.name, units)
+    with within_limits(f"cannot read `{path}`"):
+        align(found.faces)
+        if any(face.colour is not None and not _is_own(face.colour) for face in found.faces):
+            found.remarks.append("colours become the nearest of the sixteen of a model")
+        # Joins may add remarks.
+        text, model = _loadable(found, path.name, units)
     return text, model, found.remarks
 
 

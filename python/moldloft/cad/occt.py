@@ -224,7 +224,8 @@ def of_part(path: Path, metres: float, numbers: list[int] | None) -> Imported:
             "body of its own, whose volume is added instead of taken away"
         )
     if not found.faces and not found.curves:
-        raise FileError(f"cannot read `{path}`: it contains no face and no curve")
+        why = "".join(f"; {remark}" for remark in source.remarks)
+        raise FileError(f"cannot read `{path}`: it contains no face and no curve{why}")
     return found
 
 

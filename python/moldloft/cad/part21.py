@@ -95,6 +95,13 @@ class StepText:
         made = cls(text if whole else _ended(text))
         made._check_numbers(path)
         made._look_at_references()
+        if outside := made._outside():
+            named = ", ".join(f"`{name}`" for name in outside[:_MOST])
+            more = f" and {len(outside) - _MOST} more" if len(outside) > _MOST else ""
+            made.remarks.append(
+                f"parts are in other files, which are not read: {named}{more}; convert each of "
+                "them, or write one file that contains all parts"
+            )
         if whole:
             made._look_at_units()
             made._mark()
@@ -206,6 +213,31 @@ class StepText:
                         self.remarks.append(
                             f"loop #{loop} of face #{face} does not close: an edge of it is missing"
                         )
+
+    def _outside(self) -> list[str]:
+        """Names of other files to which the file refers.
+
+        Documents of ISO 10303-41 with the names that external identifications give them (CAx-IF,
+        *Recommended Practices for External References*), and the section REFERENCE of Part 21.
+        """
+        documents = {n for n, b in self.entities.items() if _DOCUMENT.search(b)}
+        found: list[str] = []
+        assigned = (
+            rf"=\s*APPLIED_EXTERNAL_IDENTIFICATION_ASSIGNMENT\s*\(\s*({_STRING})"
+            rf"(?:{_STRING}|[^;'])*?\(([#\d,\s]*)\)\s*\)\s*;"
+        )
+        for name, items in re.findall(assigned, self.text):
+            own = {int(n) for n in re.findall(r"\d+", items)} & documents
+            found += [_letters(name[1:-1])] * bool(own)
+            documents -= own
+        for n, identity, name in re.findall(
+            rf"#(\d+)\s*=\s*DOCUMENT_FILE\s*\(\s*({_STRING})\s*,\s*({_STRING})", self.text
+        ):
+            if int(n) in documents:
+                found.append(_letters(identity[1:-1]) or _letters(name[1:-1]))
+        if (section := re.search(r"\bREFERENCE\s*;(.*?)\bENDSEC\s*;", self.text, re.S)) is not None:
+            found += re.findall(r"[#@]\d+\s*=\s*<([^>#]+)", section[1])
+        return list(dict.fromkeys(name for name in found if name.strip()))
 
     def _closes(self, loop: int) -> bool:
         ends = []
@@ -385,6 +417,8 @@ class StepText:
         pattern = rf"(#(\d+)\s*=\s*(?:{'|'.join(_FACES)})\s*\(\s*)({_STRING})"
         self.text = re.sub(pattern, marked, self.text)
 
+
+_DOCUMENT = re.compile(r"(?<!\w)DOCUMENT_FILE\s*\(")
 
 _DEEPEST = 8
 """Units that others are stated by, one by the next."""

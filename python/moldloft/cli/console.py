@@ -61,11 +61,12 @@ def add_model(
     piped: bool = True,
     values: bool = True,
     refined: bool = True,
+    foreign: bool = True,
 ) -> None:
     """Add the arguments of a command that runs one model, or ``several``.
 
     Without ``piped`` only files are accepted; without ``values`` there is no ``--set``, without
-    ``refined`` no ``--refine``.
+    ``refined`` no ``--refine``, without ``foreign`` no ``--file-units``.
     """
     parser.add_argument(
         "models" if several else "model",
@@ -91,6 +92,12 @@ def add_model(
         default=[],
         help="additional folder for `load`; repeatable",
     )
+    if foreign:
+        parser.add_argument(
+            "--file-units",
+            choices=["m", "cm", "mm", "ft", "in"],
+            help="of mesh files: the unit of their numbers; default: the one that the file states",
+        )
     if refined:
         parser.add_argument(
             "--refine",
@@ -255,20 +262,35 @@ def _from_standard_input(options: argparse.Namespace) -> Model:
 
 
 def _foreign(options: argparse.Namespace) -> Model | None:
-    """The model of a mesh or CAD file; None for other files."""
+    """The model of a mesh or CAD file; None for other files.
+
+    Raises
+    ------
+    Error
+        If ``--file-units`` is given for another file than that of a mesh.
+    """
     from moldloft.cad.importing import ENDINGS, imported
+    from moldloft.errors import Error
     from moldloft.exchange.mesh_files import holds_mesh, mesh_program
     from moldloft.loading import loads
 
     place = Path(options.model)
     cad = place.suffix.lower() in ENDINGS
-    if not (cad or holds_mesh(place)) or not place.is_file():
+    mesh = holds_mesh(place)
+    stated = getattr(options, "file_units", None)
+    if stated and not mesh:
+        raise Error(
+            f"--file-units is the unit of a mesh file; {options.model} "
+            + ("states its unit itself" if cad else "is none")
+        )
+    if not (cad or mesh) or not place.is_file():
         return None
-    units = getattr(options, "units", None)
+    # Other commands have `--units` for their figures.
+    units = getattr(options, "model_units", None)
     if cad:
         _, model, remarks = imported(place, units=units or "m")
     else:
-        text, remarks = mesh_program(place)
+        text, remarks = mesh_program(place, units=units or "", file_units=stated or "")
         model = loads(text, name=f"{place.stem}.sdl")
     for remark in remarks:
         print(f"warning: {options.model}: {remark}", file=sys.stderr)

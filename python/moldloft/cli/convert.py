@@ -36,9 +36,10 @@ def add(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("-o", "--output", metavar="FILE", help="default: standard output, for text")
     parser.add_argument(
         "--units",
+        dest="model_units",
         choices=["m", "cm", "mm", "ft", "in"],
-        default="m",
-        help="of CAD files and drawings: the model's unit, into which lengths are converted (m)",
+        help="the model's unit, into which lengths of CAD files, drawings, meshes are converted; "
+        "default: m, for meshes the unit of the file",
     )
     parser.add_argument(
         "--curves",
@@ -112,11 +113,11 @@ def _from_cad(options: argparse.Namespace, target: Path | None, form: str) -> in
     if options.model.lower().endswith((".dxf", ".svg")):
         from moldloft.overlays.reading import program
 
-        text, remarks = program(options.model, units=options.units)
+        text, remarks = program(options.model, units=options.model_units or "m")
     else:
         from moldloft.cad.importing import imported
 
-        text, model, remarks = imported(options.model, units=options.units)
+        text, model, remarks = imported(options.model, units=options.model_units or "m")
     for remark in remarks:
         print(f"warning: {options.model}: {remark}", file=sys.stderr)
     if form == "sdl":

@@ -31,6 +31,11 @@ def add(parser: argparse.ArgumentParser) -> None:
     resume = verbs.add_parser("resume", help="continue the plan in the store")
     show = verbs.add_parser("show", help="print and draw the results")
     collect = verbs.add_parser("collect", help="join the stores of the parts of a plan")
+    cases = verbs.add_parser("cases", help="write the plan as a list of cases")
+    cases.add_argument("study", metavar="STUDY", help="a definition (.toml)")
+    cases.add_argument(
+        "-o", "--output", metavar="FILE", default="-", help="CSV; default: standard output"
+    )
     for verb in (sweep, best, resume, show, collect):
         verb.add_argument("study", metavar="STUDY", help="a definition (.toml)")
         if verb is collect:
@@ -62,8 +67,15 @@ def add(parser: argparse.ArgumentParser) -> None:
         verb.add_argument(
             "--retry", choices=sorted(_RETRY), help="evaluate cases in these states again"
         )
-        verb.add_argument(
+        chosen = verb.add_mutually_exclusive_group()
+        chosen.add_argument(
             "--part", metavar="K/N", type=_part, default=(1, 1), help="one part of the plan, from 1"
+        )
+        chosen.add_argument(
+            "--cases",
+            metavar="LIST",
+            default="",
+            help="only these: the header and some rows of the list of `study cases`",
         )
 
 
@@ -85,6 +97,8 @@ def run(options: argparse.Namespace) -> int:
     from moldloft.study import Store, read
 
     study = read(options.study)
+    if options.verb == "cases":
+        return _cases(study, options)
     options.store = options.store or str(Path(options.study).with_suffix(".sqlite"))
     verb = options.verb
     if verb == "resume":
@@ -100,6 +114,15 @@ def run(options: argparse.Namespace) -> int:
         with Store(options.store) as store:
             results = store.results()
     return _shown(study, results, options)
+
+
+def _cases(study: Study, options: argparse.Namespace) -> int:
+    from moldloft.study.plans import case_list, points
+    from moldloft.study.running import Cases
+
+    with Cases(study) as cases:
+        emit(options.output, case_list(study, points(study, cases.model)), [options.study])
+    return 0
 
 
 def _sweep(study: Study, options: argparse.Namespace) -> Results:
@@ -124,6 +147,7 @@ def _sweep(study: Study, options: argparse.Namespace) -> Results:
                 processes=options.processes,
                 retry=_RETRY.get(options.retry or "", ()),
                 part=options.part,
+                cases=options.cases,
                 progress=tell,
             )
         except KeyboardInterrupt:

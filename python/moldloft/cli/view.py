@@ -16,7 +16,7 @@ __all__ = ["add", "run"]
 
 def add(parser: argparse.ArgumentParser) -> None:
     """Declares the arguments."""
-    add_model(parser, piped=False, values=False, refined=False)
+    add_model(parser, piped=False, values=False, refined=False, foreign=False)
     parser.add_argument(
         "--port",
         metavar="N",

@@ -18,13 +18,13 @@ if TYPE_CHECKING:
 
 __all__ = ["holds_mesh", "mesh_of_file", "mesh_program", "mesh_statement", "read_mesh"]
 
-_ENDINGS = {"stl", "obj", "ply", "off", "msh", "vtk", "vtu", "3mf", "glb"}
+_ENDINGS = {"stl", "obj", "ply", "off", "msh", "vtk", "vtu", "vtp"}
 """Files of meshes."""
 
 _METRES = {"gdf", "mar", "dat", "pnl", "hst"}
 """Panel files of flow solvers: their numbers are metres."""
 
-_STATED = {"3dm"}
+_STATED = {"3dm", "3mf", "glb"}
 """Files that state their unit of length."""
 
 
@@ -57,10 +57,10 @@ def mesh_program(
         symmetry.
     units
         The unit of the model, into which lengths are converted; by default that of the file, and
-        metres for 3DM files.
+        metres for 3DM, 3MF and GLB files.
     file_units
         The unit of the file's numbers: m, cm, mm, ft or in. By default metres for panel files, and
-        what a 3DM file states; other files do not state it.
+        the one that a 3DM, 3MF or GLB file states; other files do not state it.
 
     Raises
     ------

@@ -13,6 +13,7 @@ import numpy as np
 
 from moldloft import _core
 from moldloft.arguments import explain
+from moldloft.budget import limited
 from moldloft.errors import FairingError, FileError, FormatError
 from moldloft.exchange.files import Output, commit
 from moldloft.fairing.blocks import blocks
@@ -105,6 +106,7 @@ def _bytes(path: Path) -> bytes:
     return read_bytes(path)
 
 
+@limited
 def read_points(path: str | os.PathLike[str], data: bytes | None = None) -> PointFile:
     """Read rows of points.
 
@@ -459,6 +461,7 @@ def _own_form(points: Floats, like: PointFile) -> str:
     return "\n".join(lines) + "\n"
 
 
+@limited
 def read_numbers(path: str | os.PathLike[str]) -> list[float]:
     """The numbers of a text, in their order: knots, weights. ``#`` begins a comment.
 
@@ -554,6 +557,7 @@ def is_grid(path: Path) -> bool:
     return whole and len(first[0]) in (1, 3)
 
 
+@limited
 def read_grids(path: str | os.PathLike[str]) -> GridFile:
     """Read the surfaces of a Plot3D file of any variant, see :func:`moldloft.grids.read_plot3d`.
 

@@ -109,8 +109,8 @@ def panels(path: Path, ending: str) -> Overlay:
     ending
         Its ending.
     """
-    points, faces = read_panels(read_bytes(path), ending)
-    return _checked(path.name, points, faces, (("panels", 0, len(faces)),), ())
+    points, faces, remarks = read_panels(read_bytes(path), ending)
+    return _checked(path.name, points, faces, (("panels", 0, len(faces)),), tuple(remarks))
 
 
 def _checked(

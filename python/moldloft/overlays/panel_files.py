@@ -16,7 +16,7 @@ from moldloft.errors import FileError
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    Panels = tuple[NDArray[np.float64], NDArray[np.int64]]
+    Panels = tuple[NDArray[np.float64], NDArray[np.int64], list[str]]
     # With the axes along which the body is mirrored.
     _Read = tuple[NDArray[np.float64], NDArray[np.int64], list[int]]
 
@@ -29,6 +29,7 @@ class _Lines:
     def __init__(self, data: bytes) -> None:
         self.rows = data.decode("utf-8", "replace").splitlines()
         self.number = 0
+        self.remarks: list[str] = []
 
     def next(self, expected: str) -> str:
         if self.number == len(self.rows):
@@ -76,7 +77,7 @@ class _Lines:
 
 
 def read_panels(data: bytes, ending: str) -> Panels:
-    r"""Points, and four corners of each panel; a triangle repeats its last.
+    r"""Points, four corners of each panel (a triangle repeats its last), and remarks.
 
     Parameters
     ----------
@@ -88,7 +89,7 @@ def read_panels(data: bytes, ending: str) -> Panels:
     Returns
     -------
     tuple
-        ``(n, 3)`` points, and ``(m, 4)`` numbers of points from 0.
+        ``(n, 3)`` points, ``(m, 4)`` numbers of points from 0, and remarks on doubtful content.
 
     Raises
     ------
@@ -98,7 +99,7 @@ def read_panels(data: bytes, ending: str) -> Panels:
     Examples
     --------
     >>> text = b"2 1\n1 0 0 0\n2 1 0 0\n3 1 1 0\n0 0 0 0\n1 2 3 3\n"
-    >>> points, faces = read_panels(text, "mar")
+    >>> points, faces, _ = read_panels(text, "mar")
     >>> len(points), faces.tolist()
     (6, [[0, 1, 2, 2], [5, 4, 3, 3]])
     """
@@ -118,7 +119,7 @@ def read_panels(data: bytes, ending: str) -> Panels:
         turned = np.where(three, faces[:, [2, 1, 0, 0]], faces[:, ::-1])
         faces = np.concatenate([faces, turned + len(points)])
         points = np.concatenate([points, image])
-    return points, faces
+    return points, faces, lines.remarks
 
 
 def _made(points: list[list[float]], faces: list[list[int]], mirrors: list[int]) -> _Read:
@@ -138,9 +139,12 @@ def _gdf(lines: _Lines) -> _Read:
     for line in lines.left():
         if line.strip():
             numbers += lines.floats(line, len(line.replace(",", " ").split()), "coordinates")
-    if len(numbers) != 12 * count:
+    if len(numbers) < 12 * count:
         raise FileError(f"NPAN is {count}: expected {12 * count} numbers, found {len(numbers)}")
-    corners = np.array(numbers, dtype=np.float64).reshape(-1, 3)
+    if left := len(numbers) - 12 * count:
+        # WAMIT reads NPAN panels and no further.
+        lines.remarks.append(f"NPAN is {count}: {left} numbers after the last panel are omitted")
+    corners = np.array(numbers[: 12 * count], dtype=np.float64).reshape(-1, 3)
     points, places = np.unique(corners, axis=0, return_inverse=True)
     faces = places.reshape(-1, 4)
     for face in faces:
@@ -212,6 +216,7 @@ def _hydrostar(lines: _Lines) -> _Read:
     points: list[list[float]] = []
     faces: list[list[int]] = []
     mirrors: list[int] = []
+    bodies: set[str] = set()
     part, numbered = "", False
     for line in lines.left():
         word = line.strip().upper()
@@ -239,10 +244,15 @@ def _hydrostar(lines: _Lines) -> _Read:
                 raise lines.fault(f"panel {len(faces) + 1}", line)
             faces.append(lines.face(words[1:] if numbered else words, line))
         elif word.startswith("SYMMETRY"):
-            kind = word.removeprefix("SYMMETRY").replace(":", " ").strip()
-            if kind not in _SYMMETRY:
+            name, *kinds = word.replace(":", " ").split()
+            # The number of the body comes before its symmetry.
+            if name == "SYMMETRY_BODY" and len(kinds) == 2:
+                bodies.add(kinds.pop(0))
+            if len(kinds) != 1 or kinds[0] not in _SYMMETRY:
                 raise lines.fault("a symmetry of 0, 1 or 2", line)
-            mirrors = _SYMMETRY[kind]
+            if len(bodies) > 1 and mirrors != _SYMMETRY[kinds[0]]:
+                raise lines.fault("one symmetry for all bodies", line)
+            mirrors = _SYMMETRY[kinds[0]]
     if part:
         raise FileError(f"the end of the {part} is missing")
     return _made(points, faces, mirrors)

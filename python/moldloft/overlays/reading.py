@@ -36,7 +36,14 @@ _MESHES = {
     "vtk": "points and surface elements of VTK's old format",
     "vtu": "points and surface elements of VTK's XML",
 }
-"""By meshio."""
+"""By meshio; PolyData in ``vtk`` by our own reader."""
+
+_POLYGONS = {"vtp": "polygons of VTK's XML"}
+
+_SCENES = {
+    "glb": "triangles of glTF, each at the position of its node; metres, y up becomes z",
+    "3mf": "triangles of the items of a build; the file states its unit",
+}
 
 _RHINO = {"3dm": "meshes of Rhino"}
 """By rhino3dm."""
@@ -61,7 +68,16 @@ _DRAWINGS = {
     "svg": "paths and basic shapes",
 }
 
-ENDINGS = {**_SURFACES, **_MESHES, **_RHINO, **_PANELS, **_POINTS, **_DRAWINGS}
+ENDINGS = {
+    **_SURFACES,
+    **_MESHES,
+    **_POLYGONS,
+    **_SCENES,
+    **_RHINO,
+    **_PANELS,
+    **_POINTS,
+    **_DRAWINGS,
+}
 """Extensions of readable files, with the content that is read."""
 
 
@@ -79,8 +95,8 @@ def read(path: str | os.PathLike[str], *, units: str = "", file_units: str = "")
         The unit of length of the model, m, cm, mm, ft or in: lengths are converted into it. By
         default numbers stay as they are in the file.
     file_units
-        The unit of the file's numbers. DXF and SVG files may state it themselves; others do not,
-        so with ``units`` it is needed for them.
+        The unit of the file's numbers. DXF, SVG, 3DM, 3MF and GLB files state it themselves; others
+        do not, so with ``units`` it is needed for them.
 
     Returns
     -------
@@ -164,9 +180,22 @@ def _read(path: Path, ending: str, data: bytes) -> tuple[Overlay, float | None]:
         return parse_svg(path.name, data)
     if ending in _POINTS:
         return _points(path.name, ending, data), None
+    if ending == "glb":
+        from moldloft.overlays.gltf import parse as parse_gltf
+
+        return parse_gltf(path.name, data)
+    if ending == "3mf":
+        from moldloft.overlays.threemf import parse as parse_threemf
+
+        return parse_threemf(path.name, data)
     from moldloft.cad.rhino_reading import meshes
+    from moldloft.overlays import polydata
     from moldloft.overlays.meshes import mesh, panels, surface
 
+    if ending in _POLYGONS:
+        return polydata.xml(path.name, data), None
+    if ending == "vtk" and polydata.is_legacy(data):
+        return polydata.legacy(path.name, data), None
     if ending in _RHINO:
         points, faces, groups, metres = meshes(data)
         return Overlay(path.name, points, faces, tuple(groups)), metres

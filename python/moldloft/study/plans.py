@@ -6,11 +6,13 @@ import csv
 import io
 import itertools
 import math
+import os
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from moldloft.budget import limited
 from moldloft.storage import read_text
 from moldloft.study.definition import Input, Study, StudyError
 from moldloft.study.extras import needed
@@ -22,7 +24,7 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
 
-__all__ = ["points", "ranges"]
+__all__ = ["case_list", "listed", "points", "ranges"]
 
 #: A plan of more cases is refused: its store would outgrow a disk.
 MAX_CASES = 100_000_000
@@ -90,7 +92,7 @@ def points(study: Study, model: Model) -> Floats:
     """
     method = study.plan.method
     if method == "table":
-        return _table(study)
+        return _table(Path(study.plan.file), study)
     box = ranges(study, model)
     made: Floats
     if method == "grid":
@@ -117,6 +119,73 @@ def points(study: Study, model: Model) -> Floats:
         if own is not None and own.whole:
             made[:, k] = np.round(made[:, k])
     return made
+
+
+def case_list(study: Study, plan: Floats) -> bytes:
+    """The points of a plan as a CSV file: the number of each case, from 1, and its inputs.
+
+    Parameters
+    ----------
+    study
+        The definition.
+    plan
+        Its points, by :func:`points`.
+    """
+    out = io.StringIO()
+    writer = csv.writer(out, lineterminator="\n")
+    writer.writerow([_NUMBER, *(each.name for each in study.inputs)])
+    for number, row in enumerate(plan.tolist(), start=1):
+        # The shortest text of the same number.
+        writer.writerow([number, *map(repr, row)])
+    return out.getvalue().encode()
+
+
+_NUMBER = "case"
+"""Header of the column of numbers in a list of cases."""
+
+
+def listed(study: Study, plan: Floats, place: str | os.PathLike[str]) -> list[int]:
+    """The rows of the plan that a list of cases names, from 0.
+
+    Parameters
+    ----------
+    study
+        The definition.
+    plan
+        Its points, by :func:`points`.
+    place
+        A file by :func:`case_list`, or some of its rows below its header.
+
+    Raises
+    ------
+    StudyError
+        If a row is not a case of the plan; the message states the row.
+    """
+    rows = list(csv.reader(io.StringIO(read_text(place))))
+    header = [_NUMBER, *(each.name for each in study.inputs)]
+    if not rows or [word.strip() for word in rows[0]] != header:
+        raise StudyError(f"{place}: expected the header `{','.join(header)}`")
+    found = []
+    for number, row in enumerate(rows[1:], start=2):
+        if not row:
+            continue
+        where = f"{place}: row {number}"
+        word = row[0].strip()
+        if not word.isdecimal() or len(word) > 12 or not 1 <= int(word) <= len(plan):
+            raise StudyError(f"{where}: expected a case of 1 to {len(plan)}, found `{word}`")
+        try:
+            values = [float(each) for each in row[1:]]
+        except ValueError as error:
+            raise StudyError(f"{where}: {error}") from None
+        if values != plan[int(word) - 1].tolist():
+            raise StudyError(
+                f"{where}: case {word} has other inputs in the plan; write the list again by "
+                "`moldloft study cases`"
+            )
+        found.append(int(word) - 1)
+    if not found:
+        raise StudyError(f"{place}: the list has a header and no cases")
+    return found
 
 
 def _limited(count: int) -> None:
@@ -159,8 +228,8 @@ def _sobol(qmc: Any, size: int, count: int, seed: int) -> Floats:
     return found
 
 
-def _table(study: Study) -> Floats:
-    place = Path(study.plan.file)
+@limited
+def _table(place: Path, study: Study) -> Floats:
     rows = list(csv.reader(io.StringIO(read_text(place))))
     rows = [row for row in rows if row and not row[0].lstrip().startswith("#")]
     if not rows:

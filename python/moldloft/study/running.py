@@ -31,7 +31,7 @@ from moldloft.loading import load
 from moldloft.storage import digest, read_bytes
 from moldloft.study.cases import SOLVER_FAILED, number
 from moldloft.study.definition import Study, StudyError
-from moldloft.study.plans import points, ranges
+from moldloft.study.plans import listed, points, ranges
 from moldloft.study.sources import check_programs, source_files
 from moldloft.study.store import Outcome, Results, Store
 from moldloft.study.workers import CRASHED, OTHER_VERSION, TIMED_OUT, end_workers, evaluate_apart
@@ -224,6 +224,7 @@ def sweep(
     processes: int = 2,
     retry: Sequence[str] = (),
     part: tuple[int, int] = (1, 1),
+    cases: str | os.PathLike[str] = "",
     progress: Callable[[int, int, Mapping[str, int]], None] | None = None,
 ) -> Results:
     """Evaluate the plan of a study; stored cases are not evaluated again.
@@ -243,6 +244,8 @@ def sweep(
         States whose cases are evaluated again, of :data:`RETRIED`.
     part
         ``(k, n)``: the k-th of n parts of the plan, for job arrays; from 1.
+    cases
+        A list of cases, by `moldloft study cases`: only these are evaluated.
     progress
         Called with the number of cases evaluated, of all, and the counts of states.
 
@@ -262,21 +265,23 @@ def sweep(
     -----
     A case depends on its inputs only, so the table is bit-identical for every executor.
     """
-    with Cases(study) as cases, Store(store, writing=True) as kept:
+    with Cases(study) as made, Store(store, writing=True) as kept:
+        plan = points(study, made.model)
+        if cases:
+            plan = plan[listed(study, plan, cases)]
         if retry:
             kept.forget(retry)
-        plan = points(study, cases.model)
         if executor is None:
             check_programs(study)
         plan = plan[part[0] - 1 :: part[1]]
-        keys = [cases.key(point) for point in plan]
+        keys = [made.key(point) for point in plan]
         kept.begin(
-            {"model": str(study.model), "digest": cases.digest, "plan": study.plan.method}, keys
+            {"model": str(study.model), "digest": made.digest, "plan": study.plan.method}, keys
         )
         known = kept.known()
         # Equal points are one case.
         missing = {key: point for key, point in zip(keys, plan, strict=True) if key not in known}
-        _evaluate(cases, kept, missing, executor, processes, progress)
+        _evaluate(made, kept, missing, executor, processes, progress)
         return kept.results()
 
 

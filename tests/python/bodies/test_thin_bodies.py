@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 import os
 import re
+import time
 from collections.abc import Iterator
 from dataclasses import dataclass
 
@@ -149,3 +150,35 @@ def test_measures_do_not_depend_on_place_and_size(offset: float, scale: float) -
     centre = (np.array(other.centroid) - [at, -at, at]) / scale
     assert np.abs(centre - first.centroid).max() < 1e-9
     assert np.abs(other.inertia / scale**5 - first.inertia).max() < 1e-9
+
+
+#: Bodies of walls far thinner than the cells of the default depth.
+NAMED = {
+    "a shell": "set_shell(set(sphere({0, 0, 0}, 1)), 0.002)",
+    "a chamfered sheet": "thin(set_chamfer(cuboid({-1, -0.22, -0.5}, {0.36, 1, 1.1}), 0.61))",
+    "a shell as a difference": "set(sphere({0, 0, 0}, 1)) - set(sphere({0, 0, 0}, 0.999))",
+    "a sheet": "thin(cuboid({-1, -0.2, -0.5}, {0.4, 1, 1.1}))",
+    "a chamfered plate": "set_chamfer(cuboid({0, 0, 0}, {2, 1, 0.004}), 0.001)",
+    "a hollow box": "set_shell(cuboid({0, 0, 0}, {2, 1, 1}), 0.003)",
+}
+
+
+@pytest.mark.parametrize("name", NAMED if SOAK else list(NAMED)[:2])
+def test_thin_bodies_by_the_default_depth_are_done_or_refused_with_the_remedy(name: str) -> None:
+    before = moldloft.limits()
+    if not SOAK:
+        # By default 10 s.
+        moldloft.limits(seconds=1)
+    began = time.process_time()
+    try:
+        model = moldloft.loads(f"SetBody b({NAMED[name]});", strict=False)
+        faults = [d for d in model.diagnostics if d.is_error]
+        if not faults:
+            assert model.mesh().volume > 0
+    finally:
+        moldloft.limits(**before._asdict())
+    for fault in faults:
+        assert fault.help and fault.primary.line == 1, fault
+        assert fault.id in ("out-of-time", "thin-part", "thin-box"), fault
+    if SOAK:
+        assert time.process_time() - began < 12

@@ -353,3 +353,54 @@ def test_comments_are_no_entities(tmp_path: Path) -> None:
     # A string that looks like one is kept.
     named = text.replace(line, re.sub(r"'[^']*'", "'a /* b */'", line, count=1))
     assert not read_back(tmp_path, named)[1]
+
+
+OUTSIDE = {
+    "by identifications (CAx-IF)": (
+        "#9001=DOCUMENT_FILE('nut','','',#9002,'',$);\n#9002=DOCUMENT_TYPE('');\n"
+        "#9003=APPLIED_EXTERNAL_IDENTIFICATION_ASSIGNMENT('nut; left.stp',#9004,#9005,(#9001));\n"
+        "#9004=IDENTIFICATION_ROLE('external document id and location',$);\n"
+        "#9005=EXTERNAL_SOURCE(IDENTIFIER('parts'));\n",
+        ["nut; left.stp"],
+    ),
+    "by identity": (
+        "#9001=DOCUMENT_FILE('bolt.stp','',$,#9002,'',$);\n#9002=DOCUMENT_TYPE('geometry');\n"
+        "#9003=DOCUMENT_FILE('','rod.stp',$,#9002,'',$);\n",
+        ["bolt.stp", "rod.stp"],
+    ),
+    "as a complex entity": (
+        "#9001=(CHARACTERIZED_OBJECT('','')DOCUMENT('l','',$,#9002)DOCUMENT_FILE());\n"
+        "#9002=DOCUMENT_TYPE('');\n"
+        "#9003=APPLIED_EXTERNAL_IDENTIFICATION_ASSIGNMENT('l.stp',#9004,#9005,(#9001));\n"
+        "#9004=IDENTIFICATION_ROLE('',$);\n#9005=EXTERNAL_SOURCE(IDENTIFIER(''));\n",
+        ["l.stp"],
+    ),
+    "nothing": ("#9001=PRODUCT('DOCUMENT_FILE(''x.stp'')','','',());\n", []),
+}
+
+
+@pytest.mark.parametrize("name", OUTSIDE)
+def test_other_files_to_which_a_file_refers_are_named(name: str, tmp_path: Path) -> None:
+    lines, files = OUTSIDE[name]
+    text = step_of(tmp_path)
+    _, remarks = read_back(tmp_path, text.replace("ENDSEC;\nEND-ISO", f"{lines}ENDSEC;\nEND-ISO"))
+    said = [remark for remark in remarks if "other files" in remark]
+    assert len(said) == bool(files)
+    for file in files:
+        assert f"`{file}`" in said[0]
+
+
+def test_a_file_without_a_shape_names_the_files_that_have_it(tmp_path: Path) -> None:
+    lines, _ = OUTSIDE["by identity"]
+    path = tmp_path / "assembly.stp"
+    head = step_of(tmp_path).partition("DATA;")[0]
+    units = re.findall(r"^#\d+=\(.*UNIT.*$", step_of(tmp_path), re.M)
+    path.write_text(
+        head + "DATA;\n" + "\n".join(units) + "\n" + lines + "ENDSEC;\nEND-ISO-10303-21;\n"
+    )
+    with pytest.raises(
+        moldloft.Error, match=r"assembly\.stp`.*other files.*`bolt\.stp`, `rod\.stp`"
+    ):
+        from moldloft.cad.importing import program
+
+        program(path)

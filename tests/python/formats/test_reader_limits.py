@@ -114,6 +114,77 @@ def test_python_is_limited_in_memory() -> None:
     assert int(count) < 1.2 * 120
 
 
+TABLE = """
+import pathlib, sys, time
+import moldloft
+from moldloft import offsets
+from moldloft.fairing.files import read_numbers, read_points
+
+status = pathlib.Path("/proc/self/status")
+moldloft.limits(memory="60M")
+before = int(status.read_text().split("VmRSS:")[1].split()[0]) // 1024
+for read, text in (
+    (read_points, "0,0.5,1\\n"), (read_numbers, "1 2 3\\n"),
+    (offsets.read, "{0},{1},0.5\\n"),
+):
+    path = pathlib.Path("table.csv")
+    head = "station,waterline,half-breadth\\n" if read is offsets.read else ""
+    rows = (text.format(k // 1000, k % 1000) for k in range(1_000_000))
+    path.write_text(head + "".join(rows))
+    try:
+        read(path)
+        print(read.__name__, "done")
+    except moldloft.FileError as error:
+        print(read.__name__, str(error).splitlines()[0])
+peak = int(status.read_text().split("VmHWM:")[1].split()[0]) // 1024
+print(peak - before)
+"""
+
+
+@pytest.mark.skipif(not Path("/proc/self/statm").exists(), reason="the system does not say it")
+def test_readers_of_tables_are_limited_in_memory(tmp_path: Path) -> None:
+    done = subprocess.run(
+        [sys.executable, "-c", TABLE], capture_output=True, text=True, cwd=tmp_path
+    )
+    assert done.returncode == 0, done.stderr[-2000:]
+    *said, grown = done.stdout.splitlines()
+    for name, line in zip(("read_points", "read_numbers", "read"), said, strict=True):
+        assert line.startswith(f"{name} cannot read `table.csv`: this needs"), line
+    # The file and its text besides; memory is looked at by the clock.
+    assert int(grown) < 300
+
+
+def test_tables_and_cad_files_are_limited_in_time(tmp_path: Path) -> None:
+    from moldloft import offsets, study
+    from moldloft.study.plans import points
+
+    path = tmp_path / "table.csv"
+    path.write_text("a,b\n" + "1,2\n" * 400_000)
+    (tmp_path / "m.sdl").write_text("param float a = 1 in [0, 9]; param float b = 1 in [0, 9];")
+    definition = study.Study(
+        tmp_path / "m.sdl",
+        (study.Input("a"), study.Input("b")),
+        {"c": "a"},
+        plan=study.Plan("table", file=str(path)),
+    )
+    model = moldloft.load(definition.model)
+    moldloft.limits(seconds=1e-3)
+    for read in (lambda: points(definition, model), lambda: offsets.read(path)):
+        with pytest.raises(moldloft.FileError, match=r"table\.csv`: .*longer than the 0\.001 s"):
+            read()
+
+
+def test_watches_within_another_change_nothing() -> None:
+    moldloft.limits(seconds=1e-3)
+    outer = pytest.raises(moldloft.FileError, match="outer: this takes longer")
+    with outer, within_limits("outer"), within_limits("inner"):
+        while True:
+            time.sleep(1e-3)
+    moldloft.limits(seconds=10)
+    with within_limits():
+        pass
+
+
 def test_an_interruption_is_over_with_the_work() -> None:
     moldloft.limits(seconds=1e-9)
     for _ in range(50):

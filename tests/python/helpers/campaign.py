@@ -1,11 +1,13 @@
-"""Damaged inputs for every reader, odd arguments for every public callable, damaged programs, by the thousand.
+"""Damaged inputs for every reader, odd arguments for every public callable, damaged programs, random sets, mutants of
+CAD files, by the thousand.
 
-    python tests/python/helpers/campaign.py [--cases 1000000] [--calls 100000] [--programs 100000] [--seconds 10] [--memory 2]
+    python tests/python/helpers/campaign.py [--cases 1000000] [--calls 100000] [--programs 100000] [--sets 100000] [--cad 10000]
+        [--seconds 10] [--memory 2]
 
 A child process, which may use so many GiB in all, reads one case after the other; a case is named by
 its number, and made from it. What is neither done nor refused by a right error within so many seconds
 of the processor, or ends the process, is printed, and the exit status is 1. `--show NUMBER` (with
-the counts of the two other kinds 0) prints one case.
+the counts of the other kinds 0) prints one case.
 """
 
 # Seeds are a line each.
@@ -257,7 +259,7 @@ def readers(world: World) -> dict[str, Reader]:
         warnings.simplefilter("ignore")
         written = {
             ending: list(model().encoded(ending, "a").values())
-            for ending in ("stl", "obj", "gdf", "ply")
+            for ending in ("stl", "obj", "gdf", "ply", "off", "glb", "3mf", "vtp")
         }
     stl = b"solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\nendsolid a\n"
     binary = bytes(80) + (2).to_bytes(4, "little") + struct.pack("<12fH", *range(12), 0) * 2
@@ -314,15 +316,57 @@ def readers(world: World) -> dict[str, Reader]:
         "record of outputs": Reader(10, records, record(permissions.RECORD)),
         "owner": Reader(10, [b'{"pid": 1, "host": "a", "since": 1.0}'], owner),
     }
+    off = b"OFF\n4 2 0\n0 0 0\n1 0 0\n0 1 0\n1 1 0.5\n3 0 1 2\n4 0 1 3 2\n"
     layers: dict[str, list[bytes]] = {
         "stl": [stl, binary], "obj": [obj], "ply": [ply], "vtk": [vtk], "gdf": [gdf], "mar": [mar],
+        "off": [off], "glb": [], "3mf": [], "vtp": [],
         "dxf": [dxf], "svg": [svg], "xyz": [points.replace(b"x,y,z\n", b"").replace(b",", b" ")],
         "csv": [points, table],
     }  # fmt: skip
     for ending, seeds in layers.items():
         seeds = [*seeds, *(d for d in written.get(ending, []) if len(d) < 20_000)]
         every[ending] = Reader(15, seeds, of_file(f"a.{ending}", overlays.read))
+    blocks = [
+        np.random.default_rng(2).random((3, 2, 4, 3)),
+        np.random.default_rng(3).random((3, 4, 3)),
+    ]
+    cgns = [
+        grids.write_cgns(world.folder / f"{k}.cgns", [b], ["a"]).read_bytes()
+        for k, b in enumerate(blocks)
+    ]
+    every["cgns"] = Reader(30, cgns, of_file("a.cgns", grids.read_cgns))
+    for name, seeds, read in binary_files(world):
+        every[name] = Reader(30, seeds, of_file(name, read))
     return every
+
+
+def binary_files(world: World) -> Iterator[tuple[str, list[bytes], Callable[[Path], object]]]:
+    """Name, seeds and reader of fonts and of meshes of Rhino, where their packages are installed."""
+    import moldloft
+    from moldloft import overlays
+
+    try:
+        from small_font import small_font
+    except ImportError:
+        pass
+    else:
+        program = world.file("letters.sdl", b'list c = text_outlines("HOAVi+", "a.ttf");')
+        fonts = [
+            small_font(world.folder / "seed.ttf", cubic).read_bytes() for cubic in (False, True)
+        ]
+        yield "a.ttf", fonts, lambda _: moldloft.load(program)
+    try:
+        import rhino3dm
+    except ImportError:
+        return
+    file, mesh = rhino3dm.File3dm(), rhino3dm.Mesh()
+    for x, y in ((0, 0), (1, 0), (1, 1), (0, 1)):
+        mesh.Vertices.Add(x, y, 0)
+    mesh.Faces.AddFace(0, 1, 2, 3)
+    file.Objects.AddMesh(mesh)
+    seed = world.folder / "seed.3dm"
+    file.Write(str(seed), 6)
+    yield "a.3dm", [seed.read_bytes()], overlays.read
 
 
 def values(rng: random.Random) -> Any:
@@ -528,8 +572,47 @@ def damaged_program(world: World, rng: random.Random, note: Callable[[str], None
         raise moldloft.Error("refused")
 
 
+def random_set(rng: random.Random, note: Callable[[str], None]) -> None:
+    """The body of a random set, by the limits that users have by default."""
+    import moldloft
+    import odd_sets
+
+    text = odd_sets.program(rng)
+    note(text[:20_000])
+    model = moldloft.loads(text, strict=False)
+    _right(model.diagnostics)
+    if model.has_errors:
+        raise moldloft.Error("refused")
+    model.mesh()
+
+
+def cad_mutant(world: World, rng: random.Random, note: Callable[[str], None]) -> None:
+    """A mutant of a STEP or IGES file, read as users read it."""
+    import cad_mutants
+    from moldloft.cad.importing import imported
+
+    path = cad_mutants.mutant(rng, world.once("cad", cad_mutants.seeds), world.folder)
+    note(path.suffix)
+    _, model, _ = imported(path)
+    _right(model.diagnostics)
+
+
 def cases(kind: str, world: World) -> Callable[[int, Callable[[str], None]], str]:
     """What runs a case by its number and names whose it is."""
+    if kind == "sets":
+
+        def one_set(number: int, note: Callable[[str], None]) -> str:
+            random_set(random.Random(f"set {number}"), note)
+            return "set"
+
+        return one_set
+    if kind == "cad":
+
+        def one_mutant(number: int, note: Callable[[str], None]) -> str:
+            cad_mutant(world, random.Random(f"cad {number}"), note)
+            return "cad"
+
+        return one_mutant
     if kind == "calls":
 
         def one_call(number: int, note: Callable[[str], None]) -> str:
@@ -559,6 +642,20 @@ def cases(kind: str, world: World) -> Callable[[int, Callable[[str], None]], str
     return one
 
 
+def processor() -> float:
+    """Seconds of the processor of this process and its children, ended ones and those at work."""
+    spent = os.times()
+    total = time.process_time() + spent.children_user + spent.children_system
+    for tasks in Path("/proc/self/task").glob("*/children"):
+        for child in tasks.read_text().split():
+            try:
+                fields = Path(f"/proc/{child}/stat").read_text().rpartition(")")[2].split()
+            except OSError:
+                continue
+            total += (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+    return total
+
+
 def work(kind: str, first: int, count: int, memory: int, seconds: float, board: str) -> None:
     """The child: cases one after the other, the present one's number on the board."""
     import resource
@@ -567,7 +664,10 @@ def work(kind: str, first: int, count: int, memory: int, seconds: float, board: 
     warnings.simplefilter("ignore")
     import moldloft
 
-    moldloft.limits(memory=memory << 29, seconds=seconds / 2)
+    moldloft.limits(memory=memory << 29)
+    # Bodies of sets and CAD files have bounds of their own by default.
+    if kind not in ("sets", "cad"):
+        moldloft.limits(seconds=seconds / 2)
     if kind == "programs":
         moldloft.limits(steps=1_000_000)
     answers = os.fdopen(os.dup(1), "w", buffering=1)
@@ -583,7 +683,7 @@ def work(kind: str, first: int, count: int, memory: int, seconds: float, board: 
             for number in range(first, first + count):
                 shown[:_BOARD_SIZE] = struct.pack(_BOARD, number, time.monotonic(), *counts)
                 text: list[str] = []
-                begun = time.process_time()
+                begun = processor()
                 fault = ""
                 try:
                     with redirect_stdout(said), redirect_stderr(said):
@@ -600,7 +700,7 @@ def work(kind: str, first: int, count: int, memory: int, seconds: float, board: 
                 except BaseException as error:
                     outcome = "fault"
                     fault = f"{type(error).__name__}: {error}"
-                took = time.process_time() - begun
+                took = processor() - begun
                 slowest = max(slowest, took)
                 if took > seconds:
                     fault = fault or f"{took:.1f} s"
@@ -635,6 +735,13 @@ class Outcome:
         )
 
 
+KINDS = {"readers": "cases", "calls": "calls", "programs": "programs", "sets": "sets", "cad": "cad"}
+"""Kinds of cases, with the options of their counts."""
+
+SECONDS = {"sets": 20.0}
+"""Seconds of the processor of a case, where they are not 10."""
+
+
 def _batches(first: int, count: int, size: int) -> Iterator[tuple[int, int]]:
     for at in range(first, first + count, size):
         yield at, min(size, first + count - at)
@@ -643,7 +750,7 @@ def _batches(first: int, count: int, size: int) -> Iterator[tuple[int, int]]:
 def campaign(
     kind: str, first: int, count: int, *, memory: int = 2, seconds: float = 10, size: int = 20_000
 ) -> Outcome:
-    """Runs cases (``readers``, ``calls`` or ``programs``) in children and gathers what became of them."""
+    """Runs cases of a kind (:data:`KINDS`) in children and gathers what became of them."""
     found = Outcome()
     waiting = list(_batches(first, count, size))
     environment = {**os.environ, "RAYON_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
@@ -702,28 +809,27 @@ def main() -> int:
     parser.add_argument("--cases", type=int, default=1_000_000)
     parser.add_argument("--calls", type=int, default=100_000)
     parser.add_argument("--programs", type=int, default=100_000)
+    parser.add_argument("--sets", type=int, default=100_000)
+    parser.add_argument("--cad", type=int, default=10_000)
     parser.add_argument("--first", type=int, default=0)
     parser.add_argument("--memory", type=int, default=2, help="GiB in all")
-    parser.add_argument("--seconds", type=float, default=10, help="of the processor, for each case")
+    parser.add_argument(
+        "--seconds", type=float, help="of the processor, for each case; default 10, sets 20"
+    )
     parser.add_argument("--show", type=int, help="the number of a case to run here")
     options = parser.parse_args()
     if options.show is not None:
         with tempfile.TemporaryDirectory() as name:
             world = World(Path(name))
             os.chdir(name)
-            shown = "readers" if options.cases else "calls" if options.calls else "programs"
+            shown = next(k for k, option in KINDS.items() if getattr(options, option))
             cases(shown, world)(options.show, print)
         return 0
     faults = 0
-    for kind, count in (
-        ("readers", options.cases),
-        ("calls", options.calls),
-        ("programs", options.programs),
-    ):
-        if count:
-            found = campaign(
-                kind, options.first, count, memory=options.memory, seconds=options.seconds
-            )
+    for kind, option in KINDS.items():
+        if count := getattr(options, option):
+            seconds = options.seconds or SECONDS.get(kind, 10)
+            found = campaign(kind, options.first, count, memory=options.memory, seconds=seconds)
             print(f"{kind}: {found}", *found.faults, sep="\n", flush=True)
             faults += len(found.faults)
     return 1 if faults else 0

@@ -360,7 +360,7 @@ def test_every_picture_is_drawn_by_a_script_and_used() -> None:
     names = {
         f"{name}.png" for kind in ("MODELS", "PROGRAMS", "PLOTS", "STUDIES") for name in drawn[kind]
     }
-    names.add("deformation.png")
+    names |= {"deformation.png", "study-waves.png"}
     for script in ("desk_pictures.py", "making_pictures.py"):
         text = (DOCS / script).read_text(encoding="utf-8")
         names |= {f"{name}.png" for name in re.findall(r'shown\(page, "([\w-]+)"\)', text)}

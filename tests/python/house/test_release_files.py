@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import json
+import os
 import re
 import runpy
+import shutil
 import subprocess
 import sys
 import tarfile
+import zipfile
 from importlib.metadata import requires
 from pathlib import Path
 from typing import Any
@@ -102,6 +105,33 @@ def test_all_that_the_tests_install_is_locked_with_hashes() -> None:
         if re.search(r"extra == ['\"](test|view)['\"]", line)
     ]
     assert wanted and {named(line) for line in wanted} <= locked
+
+
+def test_a_release_builds_by_the_locked_maturin(monkeypatch: pytest.MonkeyPatch) -> None:
+    release = runpy.run_path(str(ROOT / "tools" / "release.py"))
+    maturin = release["maturin"]
+    commands: list[list[str]] = []
+    names = maturin.__globals__
+    monkeypatch.setitem(names, "run", lambda *words: commands.append([str(w) for w in words]))
+    monkeypatch.setattr(names["importlib"].util, "find_spec", lambda name: None)
+    monkeypatch.setattr(names["venv"], "create", lambda *_, **__: None)
+    python = maturin()[0]
+    locked = str(ROOT / "requirements" / "build.txt")
+    command = [python, "-m", "pip", "install", "--quiet", "--require-hashes", "--requirement"]
+    assert commands == [[*command, locked]]
+
+
+def test_docs_name_the_crates_of_the_nightly_checks() -> None:
+    jobs = read(ROOT / ".github" / "workflows" / "deep.yml")["jobs"]
+    text = (ROOT / "docs" / "soak.md").read_text(encoding="utf-8")
+    for job, name in (("miri", "Miri"), ("thread-sanitizer", "ThreadSanitizer")):
+        command = next(
+            step["run"] for step in jobs[job]["steps"] if "cargo " in step.get("run", "")
+        )
+        listed = re.search(rf"{name} \((?:tests of )?([^)]*)\)", text)
+        assert listed, name
+        assert re.findall(r"`(\w+)`", listed[1]) == re.findall(r"-p moldloft-(\w+)", command)
+        assert re.search(rf"\| {name}.*, last run on \d+ \w+ 20\d\d: ", text), name
 
 
 def test_the_recipe_needs_what_the_package_needs() -> None:
@@ -373,3 +403,41 @@ def test_what_needs_an_extra_names_it(tmp_path: Path) -> None:
         done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, timeout=60)
         assert done.returncode != 0, (extra, done.stdout)
         assert f"moldloft[{extra}]" in done.stderr, (extra, done.stderr[-600:])
+
+
+def test_each_target_of_fuzzing_has_a_corpus() -> None:
+    """As `tools/fuzz.py` and the configuration for OSS-Fuzz take it."""
+    fuzz = ROOT / "fuzz"
+    targets = {path.stem for path in (fuzz / "fuzz_targets").glob("*.rs")}
+    assert targets == {path.name for path in (fuzz / "corpus").iterdir()}
+    assert targets == set(runpy.run_path(str(ROOT / "tools" / "fuzz.py"))["SEEDS"])
+    for path in (fuzz / "corpus").rglob("*"):
+        assert path.is_dir() or 0 < path.stat().st_size < 4096, path
+
+
+@pytest.mark.skipif(not shutil.which("zip"), reason="the program zip is not installed")
+def test_the_configuration_for_oss_fuzz_packs_corpora_and_dictionaries(tmp_path: Path) -> None:
+    """Its script as it is, with stand-ins for the compiled targets."""
+    out, commands, copy = tmp_path / "out", tmp_path / "bin", tmp_path / "moldloft"
+    for folder in (out, commands):
+        folder.mkdir()
+    names = ("examples", "fuzz", "python/moldloft/kinds.pyi", "python/moldloft/functions.pyi")
+    for name in (*names, "tests/corpus"):
+        (copy / name).parent.mkdir(parents=True, exist_ok=True)
+        (copy / name).symlink_to(ROOT / name)
+    (copy / "fuzz").unlink()
+    shutil.copytree(ROOT / "fuzz", copy / "fuzz", ignore=shutil.ignore_patterns("target"))
+    built = copy / "fuzz" / "target" / "x86_64-unknown-linux-gnu" / "release"
+    built.mkdir(parents=True)
+    targets = [path.stem for path in (ROOT / "fuzz" / "fuzz_targets").glob("*.rs")]
+    for name in targets:
+        (built / name).touch()
+    (commands / "cargo").write_text("#!/bin/sh\n")
+    (commands / "cargo").chmod(0o755)
+    environment = {**os.environ, "PATH": f"{commands}:{os.environ['PATH']}"}
+    environment |= {"SRC": str(tmp_path), "OUT": str(out)}
+    subprocess.run(["bash", ROOT / "fuzz" / "oss-fuzz" / "build.sh"], env=environment, check=True)
+    for name in targets:
+        with zipfile.ZipFile(out / f"{name}_seed_corpus.zip") as packed:
+            assert packed.namelist()
+    assert len((out / "document.dict").read_text(encoding="utf-8").splitlines()) > 300

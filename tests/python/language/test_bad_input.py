@@ -42,6 +42,11 @@ CASES = {
     ),
     "use before declaration": ("Line ab(A, B);\n" + POINTS, 1, ["`A`"]),
     "unfinished text": (POINTS + "BCurve c({A, B", 5, ["expected"]),
+    "local hides its argument": (
+        "subroutine f(float x) {\n  float y = x;\n  if (y > 0) {\n    float x = 1;\n  }\n}",
+        4,
+        ["`x` is an argument already", "the argument", "assign to the argument"],
+    ),
     "parameter out of range": ("param float b = 9 in [1, 3];", 1, ["range"]),
 }
 

@@ -5,10 +5,15 @@
 
 from __future__ import annotations
 
+import base64
+import io
+import json
 import os
+import struct
 import subprocess
 import sys
 import time
+import zipfile
 from pathlib import Path
 
 import pytest
@@ -195,12 +200,119 @@ def chosen() -> list[str]:
     return names if SOAK else names[2::4]
 
 
+def zipped(data: bytes) -> bytes:
+    """A 3MF file whose model is this."""
+    out = io.BytesIO()
+    with zipfile.ZipFile(out, "w", zipfile.ZIP_DEFLATED) as archive:
+        archive.writestr("3D/3dmodel.model", data)
+    return out.getvalue()
+
+
+VTP = (
+    b'<VTKFile type="PolyData" byte_order="LittleEndian" header_type="UInt64" '
+    b'compressor="vtkZLibDataCompressor"><PolyData><Piece NumberOfPoints="1000000000" '
+    b'NumberOfPolys="1"><Points><DataArray type="Float64" format="binary">%s</DataArray></Points>'
+    b"</Piece></PolyData></VTKFile>"
+)
+GLB = json.dumps(
+    {
+        "scenes": [{"nodes": [0]}],
+        "nodes": [{"mesh": 0}],
+        "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
+        "accessors": [{"componentType": 5126, "count": 90_000_000, "type": "VEC3"}],
+    }
+).encode()
+
+#: Files of other programs that state or unfold to far more than they hold, and their endings.
+FILES = {
+    "stl 2^32": ("stl", bytes(80) + b"\xff\xff\xff\xff" + bytes(50)),
+    "ply 1e9": (
+        "ply",
+        b"ply\nformat binary_little_endian 1.0\nelement vertex 1000000000\nproperty float x\n"
+        b"property float y\nproperty float z\nend_header\n",
+    ),
+    "ply list 2^31": (
+        "ply",
+        b"ply\nformat binary_little_endian 1.0\nelement vertex 0\nproperty float x\nelement face 1\n"
+        b"property list uint int vertex_indices\nend_header\n\xff\xff\xff\x7f",
+    ),
+    "off 1e9": ("off", b"OFF\n1000000000 1000000000 0\n0 0 0\n"),
+    "obj indices": ("obj", b"v 0 0 0\nf " + b"1 " * 2_000_000),
+    "gdf 1e9": ("gdf", b"a\n1 9.8\n0 0\n999999999\n0 0 0\n"),
+    "pnl 1e9": ("pnl", b"a\nb\nc\n999999999 999999999 0 0\n\n\n1 0 0 0\n"),
+    "glb 9e7": ("glb", struct.pack("<4s4I", b"glTF", 2, 20 + len(GLB), len(GLB), 0x4E4F534A) + GLB),
+    "glb brackets": (
+        "glb",
+        struct.pack("<4s4I", b"glTF", 2, 20 + 10**7, 10**7, 0x4E4F534A) + b"[" * 10**7,
+    ),
+    "3mf unfolds": ("3mf", zipped(b" " * (600 << 20))),
+    "vtp blocks": ("vtp", VTP % base64.b64encode(struct.pack("<3Q", 2**40, 2**40, 0))),
+    "vtk 1e12": ("vtk", b"# vtk DataFile Version 3.0\na\nBINARY\nDATASET POLYDATA\nPOINTS 999999999999 float\n"),
+    "vtk cells": (
+        "vtk",
+        b"# vtk DataFile Version 3.0\na\nASCII\nDATASET POLYDATA\nPOINTS 1 float\n0 0 0\nPOLYGONS 999999999 1\n0\n",
+    ),
+    "dxf blocks": (
+        "dxf",
+        b"".join(
+            [b"0\nSECTION\n2\nBLOCKS\n"]
+            + [
+                b"0\nBLOCK\n2\nB%d\n10\n0\n20\n0\n%s0\nENDBLK\n"
+                % (k, b"0\nINSERT\n2\nB%d\n10\n0\n20\n0\n" % (k + 1) * 10)
+                for k in range(12)
+            ]
+            + [b"0\nBLOCK\n2\nB12\n10\n0\n20\n0\n0\nLINE\n10\n0\n20\n0\n11\n1\n21\n1\n0\nENDBLK\n"]
+            + [b"0\nENDSEC\n0\nSECTION\n2\nENTITIES\n0\nINSERT\n2\nB0\n10\n0\n20\n0\n0\nENDSEC\n0\nEOF\n"]
+        ),
+    ),
+    "svg depth": ("svg", b'<svg xmlns="http://www.w3.org/2000/svg">' + b"<g>" * 10**6),
+    "svg entities": ("svg", b'<!DOCTYPE s [<!ENTITY a "b">]><svg/>'),
+    "step numbers": ("step", b"ISO-10303-21;\nDATA;\n#1=CARTESIAN_POINT('',(1.E999,0.,0.));\nENDSEC;\nEND-ISO-10303-21;\n"),
+    "step deep": ("step", b"ISO-10303-21;\nDATA;\n#1=A(" + b"(" * 10**6 + b");\nENDSEC;\nEND-ISO-10303-21;\n"),
+    "csv of offsets": ("csv", b"station,waterline,half-breadth\n" + b"0,0,1\n" * 500_000),
+}  # fmt: skip
+
+
+def chosen_files() -> list[str]:
+    """In the ordinary tests every third."""
+    return list(FILES) if SOAK else list(FILES)[::3]
+
+
+@pytest.mark.parametrize("name", chosen_files())
+def test_a_file_that_states_too_much_does_no_harm(tmp_path: Path, name: str) -> None:
+    ending, data = FILES[name]
+    for module in {"dxf": ["ezdxf"], "step": ["OCP"]}.get(ending, []):
+        pytest.importorskip(module)
+    (tmp_path / f"bomb.{ending}").write_bytes(data)
+    peak = harmless(tmp_path, ["convert", f"bomb.{ending}", "-o", "out.sdl"])
+    assert peak < REFUSED, f"{peak} MB"
+
+
 @pytest.mark.parametrize("name", chosen())
 def test_a_bomb_does_no_harm(tmp_path: Path, name: str) -> None:
     text, command = BOMBS[name]
     (tmp_path / "model.sdl").write_text(text)
+    harmless(tmp_path, [command, "model.sdl"])
+
+
+#: Commands beside those of the texts, with their arguments.
+COMMANDS = {
+    "eval": ["1"], "fmt": [], "graph": ["-o", "g.svg"], "hydro": ["--draft", "1"],
+    "render": ["-o", "p.png", "--size", "60x40"], "convert": ["-o", "m.ms2"], "export": ["--html"],
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("command", COMMANDS if SOAK else list(COMMANDS)[::3])
+@pytest.mark.parametrize("name", ["parens 1e6", "setbody depth 12", "for objs 1e7"])
+def test_a_bomb_does_no_harm_in_other_commands(tmp_path: Path, name: str, command: str) -> None:
+    (tmp_path / "model.sdl").write_text(BOMBS[name][0])
+    harmless(tmp_path, [command, "model.sdl", *COMMANDS[command]])
+
+
+def harmless(tmp_path: Path, words: list[str]) -> int:
+    """Runs a command that may refuse by name; the peak of its memory in megabytes."""
     # Time of the processor ends what has no end; a development build is slow.
-    words = [sys.executable, "-m", "moldloft", command, "model.sdl"]
+    words = [sys.executable, "-m", "moldloft", *words]
     with (tmp_path / "out").open("wb") as out, (tmp_path / "err").open("wb") as err:
         child = subprocess.Popen(
             words, cwd=tmp_path, stdout=out, stderr=err, stdin=subprocess.DEVNULL,
@@ -222,3 +334,4 @@ def test_a_bomb_does_no_harm(tmp_path: Path, name: str) -> None:
     if child.returncode:
         assert "error[" in said or "error: " in said, said[-2000:]
     assert peak < (REFUSED if child.returncode else DONE), f"{peak} MB\n{said[-500:]}"
+    return peak

@@ -251,6 +251,18 @@ def test_python_functions_are_differentiated_by_calls_of_theirs():
     assert close(rows[0], exact) and ahead == []
 
 
+#: Examples whose meshes reverse mode refuses, so that forward mode takes them.
+AHEAD = {
+    "gallery": {
+        *("bracket", "caisson", "helmet", "lattice", "lock", "manifold", "rowing_shell"),
+        *("spar", "swath"),
+    },
+    "implicit": {"lambdas", "manifold", "neck", "quadric", "tee", "wave", "wires"},
+    "missile": {"finned", "half"},
+    "sketch": {"site"},
+}
+
+
 @pytest.mark.parametrize("path", sorted(EXAMPLES.glob("*/*.sdl")), ids=lambda p: p.stem)
 def test_examples_have_the_gradients_of_their_jacobians(path):
     m = moldloft.load(path)
@@ -262,7 +274,10 @@ def test_examples_have_the_gradients_of_their_jacobians(path):
     except moldloft.Error as error:
         pytest.skip(str(error).splitlines()[0])
     w = np.random.default_rng(4).normal(size=mesh.vertices.shape)
-    rows, _ = _core.vjp(m._document, [("mesh", w.reshape(1, -1))], by, "reverse")
+    rows, ahead = _core.vjp(m._document, [("mesh", w.reshape(1, -1))], by, "reverse")
+    # Forward mode beside itself would say nothing.
+    expected = ["mesh"] if path.stem in AHEAD.get(path.parent.name, ()) else []
+    assert ahead == expected
     assert close(rows[0], np.einsum("vc,vcn->n", w, jacobian))
 
 

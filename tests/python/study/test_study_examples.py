@@ -5,6 +5,7 @@ from __future__ import annotations
 import importlib.util
 import math
 import os
+import sys
 from dataclasses import replace
 from types import ModuleType
 
@@ -20,10 +21,14 @@ EXAMPLES = ROOT / "examples" / "studies"
 
 
 def module(name: str) -> ModuleType:
-    """The Python file of an example."""
+    """The Python file of an example, which may import those beside it."""
     spec = importlib.util.spec_from_file_location(f"study_{name}", EXAMPLES / f"{name}.py")
     found = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(found)
+    sys.path.insert(0, str(EXAMPLES))
+    try:
+        spec.loader.exec_module(found)
+    finally:
+        sys.path.pop(0)
     return found
 
 
@@ -122,6 +127,94 @@ def test_platform(tmp_path):
         # Slender legs, large pontoons and a wide spacing are at the ends of their ranges.
         ends = [best.inputs[n] for n in ("leg_radius", "pontoon_radius", "spacing")]
         assert np.allclose(ends, [7, 4.5, 90], rtol=1e-6)
+
+
+#: Half of a ball, its centre in the water; mirrored in both planes.
+HEMISPHERE = """
+    Model info(symmetry = "xy", units = "m"); float r = 5; float h = r*sqrt(0.5);
+    AbsPoint O(0, 0, 0); AbsPoint S(0, 0, -r); AbsPoint M(h, 0, -h); AbsPoint E(r, 0, 0);
+    Line axis(S, O); Arc quarter(S, M, E);
+    RevSurf ball(quarter, axis, 0, PI/2, divisions = {14, 14});
+"""
+
+
+def test_added_mass_of_a_hemisphere():
+    """The limits of Hulme (1982), by the ball of its image: 1/2 of the displaced mass.
+
+    The Wave Forces Acting on a Floating Hemisphere Undergoing Forced Periodic Oscillations, Journal
+    of Fluid Mechanics 121: heave at infinite frequency and surge at none are those of a ball in
+    unbounded water; heave at none is 0.8310.
+    """
+    capytaine = pytest.importorskip("capytaine")
+    capytaine.set_logging("ERROR")
+    body = moldloft.loads(HEMISPHERE).to_capytaine(centre=(0, 0, 0))
+    mass = 1025 * 2 / 3 * math.pi * 5**3
+    assert abs(body.volume * 1025 / mass - 1) < 0.01
+    for dof, omega, share in (("Heave", math.inf, 0.5), ("Surge", 0, 0.5), ("Heave", 0, 0.8310)):
+        problem = capytaine.RadiationProblem(
+            body=body, radiating_dof=dof, omega=omega, water_depth=math.inf, rho=1025
+        )
+        added = float(capytaine.BEMSolver().solve(problem).added_masses[dof])
+        assert abs(added / mass - share) < 0.02, (dof, omega, added / mass)
+
+
+def test_motions_of_a_float_are_those_of_the_water_in_long_waves():
+    """Surge and heave follow the water, pitch the slope, a quarter of a period apart."""
+    pytest.importorskip("capytaine")
+    waves = module("waves")
+    model = moldloft.load(EXAMPLES / "float.sdl")
+    periods = [40.0, 60.0]
+    found = waves.operators(model, periods, heading=0.0, centre=(0, 0, -6), gyration=(4, 4, 4))
+    assert np.abs(found["Heave"] - 1).max() < 1e-3
+    assert np.abs(np.abs(found["Surge"]) - 1).max() < 0.012
+    assert abs(abs(found["Surge"][1]) - 1) < abs(abs(found["Surge"][0]) - 1)
+    slopes = np.array([waves.slope(period) for period in periods])
+    assert np.abs(np.abs(found["Pitch"]) / slopes - 1).max() < 0.05
+    for dof in ("Sway", "Roll", "Yaw"):
+        assert np.abs(found[dof]).max() < 1e-9
+    # The order of the periods is kept; waves along y move it in sway and roll alone.
+    across = waves.operators(
+        model, periods[::-1], heading=math.pi / 2, centre=(0, 0, -6), gyration=(4, 4, 4)
+    )
+    assert np.allclose(across["Sway"][::-1], found["Surge"], rtol=2e-3)
+    assert np.allclose(across["Heave"][::-1], found["Heave"], rtol=1e-3)
+    assert np.allclose(np.abs(across["Roll"][::-1]), np.abs(found["Pitch"]), rtol=2e-3)
+
+
+def test_radiated_and_exciting_energy_agree():
+    """Damping in heave of a body round about the vertical from its exciting force (Newman 1962)."""
+    capytaine = pytest.importorskip("capytaine")
+    capytaine.set_logging("ERROR")
+    body = moldloft.load(EXAMPLES / "float.sdl").to_capytaine(centre=(0, 0, -6))
+    density, gravity = 1025.0, 9.81
+    for omega in (0.6, 1.0):
+        common = {"body": body, "omega": omega, "water_depth": math.inf, "rho": density}
+        radiated = capytaine.RadiationProblem(radiating_dof="Heave", **common)
+        damping = float(capytaine.BEMSolver().solve(radiated).radiation_dampings["Heave"])
+        waves = capytaine.DiffractionProblem(wave_direction=0.0, **common)
+        solved = capytaine.BEMSolver().solve(waves)
+        force = (
+            solved.forces["Heave"] + capytaine.bem.airy_waves.froude_krylov_force(waves)["Heave"]
+        )
+        number, group = omega**2 / gravity, gravity / (2 * omega)
+        expected = number * abs(force) ** 2 / (4 * density * gravity * group)
+        assert abs(damping / expected - 1) < 0.01, omega
+
+
+def test_waves(tmp_path):
+    """Studies of platform and hull in waves; the first row of each, or all where there is time."""
+    pytest.importorskip("capytaine")
+    for name in ("platform_waves", "hull_waves"):
+        definition = study.read(EXAMPLES / f"{name}.toml")
+        (tmp_path / name).mkdir()
+        store = tmp_path / name / "s.sqlite"
+        table = study.sweep(definition, store, part=(1, 1 if SOAK else 100), processes=1)
+        assert table.counts == {"done": len(table)}
+        for output in ("heave_24", "surge_24") if "platform" in name else ("heave_8", "pitch_8"):
+            assert (np.abs(table.outputs[output] - 1) < 0.25).all()
+        # Short waves move neither.
+        short = "heave_8" if "platform" in name else "heave_3"
+        assert (table.outputs[short] < 0.9).all()
 
 
 def test_fine_hull(tmp_path):

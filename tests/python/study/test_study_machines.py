@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import os
+import re
+import shutil
 import stat
+import subprocess
 import sys
 from pathlib import Path
 from typing import Any
@@ -12,6 +15,7 @@ import numpy as np
 import pytest
 
 from moldloft import study
+from moldloft.cli import main
 from study_campaign import by_dask, killed, written
 
 SOAK = os.environ.get("MOLDLOFT_SOAK") == "1"
@@ -77,6 +81,75 @@ def test_a_local_cluster_grows_with_the_cases(tmp_path: Path) -> None:
     finally:
         cluster.close()
     assert table == serial
+
+
+def commands(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Puts `moldloft` on the path, as that of this Python."""
+    place = folder / "bin" / "moldloft"
+    place.parent.mkdir()
+    place.write_text(f'#!/bin/sh\nexec {sys.executable} -m moldloft "$@"\n')
+    place.chmod(place.stat().st_mode | stat.S_IXUSR)
+    monkeypatch.setenv("PATH", f"{place.parent}{os.pathsep}{os.environ['PATH']}")
+    monkeypatch.chdir(folder)
+
+
+def recipe(language: str, word: str) -> str:
+    """A block of the page on studies that has a word."""
+    text = (Path(__file__).parents[3] / "docs" / "studies.md").read_text(encoding="utf-8")
+    (found,) = (b for b in re.findall(rf"```{language}\n(.*?)```", text, re.S) if word in b)
+    return found.replace("yacht.toml", "box.toml")
+
+
+def test_a_job_array_by_a_list_of_cases(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    written(tmp_path, 24)
+    commands(tmp_path, monkeypatch)
+    serial = study.sweep(study.read("box.toml"), "serial.sqlite").csv()
+    assert main(["study", "cases", "box.toml", "-o", "cases.csv"]) == 0
+    assert Path("cases.csv").read_text().splitlines()[0] == "case,a,b"
+    Path("job.sh").write_text(recipe("sh", "SLURM_ARRAY").replace("100", "5"))
+    for k in range(1, 6):
+        monkeypatch.setenv("SLURM_ARRAY_TASK_ID", str(k))
+        assert subprocess.run(["sh", "job.sh"]).returncode in (0, 1)
+        with study.Store(f"part-{k}.sqlite") as store:
+            assert 4 <= len(store.known()) <= 5
+    parts = [f"part-{k}.sqlite" for k in range(1, 6)]
+    capsys.readouterr()
+    main(["study", "collect", "box.toml", *parts, "--store", "all.sqlite", "--csv", "all.csv"])
+    assert Path("all.csv").read_bytes() == serial
+
+
+@pytest.mark.skipif(shutil.which("snakemake") is None, reason="snakemake is not installed")
+def test_a_workflow_of_snakemake(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    written(tmp_path, 60)
+    commands(tmp_path, monkeypatch)
+    serial = study.sweep(study.read("box.toml"), "serial.sqlite").csv()
+    Path("Snakefile").write_text(recipe("python", "# Snakefile"))
+    subprocess.run(["snakemake", "-c", "2", "table"], check=True)
+    assert Path("yacht.csv").read_bytes() == serial
+    assert len(list(Path("parts").glob("*.sqlite"))) == 3
+
+
+@pytest.mark.parametrize(
+    ("rows", "message"),
+    [
+        ("a,b\n1,2\n", "expected the header `case,a,b`"),
+        ("case,a,b\n", "a header and no cases"),
+        ("case,a,b\n9,0.5,0.5\n", "row 2: expected a case of 1 to 8, found `9`"),
+        ("case,a,b\nx,0.5,0.5\n", "row 2: expected a case of 1 to 8, found `x`"),
+        ("case,a,b\n1,0.5,q\n", "row 2: could not convert"),
+        ("case,a,b\n1,0.5,0.5\n", "row 2: case 1 has other inputs in the plan"),
+        ("case,a,b\n1,0.5\n", "row 2: case 1 has other inputs in the plan"),
+    ],
+)
+def test_lists_that_are_not_of_the_plan_are_refused(
+    tmp_path: Path, rows: str, message: str
+) -> None:
+    definition = study.read(written(tmp_path, 8))
+    (tmp_path / "list.csv").write_text(rows)
+    with pytest.raises(study.StudyError, match=message):
+        study.sweep(definition, tmp_path / "a.sqlite", cases=tmp_path / "list.csv")
 
 
 #: Commands of SLURM that run a job at once on this machine.
