@@ -9,6 +9,7 @@ mod open_depths;
 mod picture_axes;
 pub(crate) mod planes;
 pub(crate) mod projection;
+pub(crate) mod stroke;
 
 use axis::{CoordinateAxis, Free, Letters};
 use projection::Projection;

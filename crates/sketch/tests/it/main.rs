@@ -27,6 +27,8 @@ mod section_shapes;
 mod session;
 mod solids;
 mod svg_shapes;
+mod stroke_hands;
+mod strokes;
 mod sweeps;
 mod tangent;
 mod texts;
