@@ -86,6 +86,7 @@ pub use drawing::estimate::{Estimate, FreeDepth, MAX_PLANES};
 pub use drawing::line_types::{DOUBTFUL, NAMING_TOLERANCE};
 pub use drawing::planes::{Planes, Reason, TypeFault, why};
 pub use drawing::projection::Projection;
+pub use drawing::proposals::TypeProposal;
 pub use drawing::stroke::{
     PenSample, StrokeFault, StrokeFit, StrokeKind, StrokePiece, fit_stroke, pen_positions,
 };

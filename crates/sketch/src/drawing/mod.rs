@@ -9,6 +9,7 @@ mod open_depths;
 mod picture_axes;
 pub(crate) mod planes;
 pub(crate) mod projection;
+pub(crate) mod proposals;
 pub(crate) mod stroke;
 
 use axis::{CoordinateAxis, Free, Letters};
@@ -140,6 +141,8 @@ pub struct Drawing {
     /// True if positions on the page of a section are its coordinates: types and suggested
     /// dimensions are as drawn.
     pub exact: bool,
+    /// Probability from which TYPE AUTO types a line; 0 for every line.
+    pub certainty: f64,
     /// Directions of the axes.
     pub projection: Projection,
     /// Meaning of H, P and F.

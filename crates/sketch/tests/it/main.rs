@@ -23,6 +23,7 @@ mod near_misses;
 mod offsets;
 mod pictures;
 mod projection;
+mod proposals;
 mod section_shapes;
 mod session;
 mod solids;
