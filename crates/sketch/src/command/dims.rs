@@ -413,6 +413,18 @@ impl SketchSession {
                 range: None,
             });
         }
+        let certainty = args.tokens_at(0, "CERTAINTY") && args.number_at(1);
+        if certainty && !self.active()?.has_name("CERTAINTY") {
+            args.skip();
+            let certainty = args.number("a probability from 0 to 1")?;
+            args.end()?;
+            if !(0.0..=1.0).contains(&certainty) {
+                let text = format!("a probability is from 0 to 1, not {}", plain(certainty));
+                return Err(CommandError::text(text, "SET CERTAINTY 0.9"));
+            }
+            self.active_mut()?.draw().certainty = certainty;
+            return Ok(());
+        }
         if args.take_short("UP") {
             let axis = args.axis().ok_or_else(|| args.wants("an axis"))?;
             args.end()?;

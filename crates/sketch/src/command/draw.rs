@@ -7,7 +7,7 @@ use super::subject::ReplySubject;
 use super::words::CommandTokenKind;
 use crate::{
     Align, CoordinateAxis, Drawing, DrawnLine, DrawnPoint, FaceId, Free, LineId, LineTypeSource,
-    Naming, PointId, Projection, SketchObject,
+    Naming, PointId, Projection, SketchObject, TypeProposal,
 };
 
 /// Points that are farther apart than this part of the drawing are welded with a warning.
@@ -477,14 +477,19 @@ impl SketchSession {
         if args.take("AUTO") {
             args.end()?;
             let drawing = self.active_mut()?.draw();
-            let proposed = drawing.type_all();
-            let text: Vec<String> = proposed.iter().map(|&l| drawing.line_text(l)).collect();
-            let lines = drawing.lines.len();
-            self.out.push(CommandReply::note(format!("{lines} lines typed")));
-            if !text.is_empty() {
-                let text = format!("proposed as oblique, please check: {}", text.join(", "));
-                self.out.push(CommandReply::warning(text));
+            let (oblique, left) = drawing.type_certain();
+            let list = |ids: &[LineId]| -> String {
+                let all: Vec<String> = ids.iter().map(|l| drawing.line_text(*l)).collect();
+                all.join(", ")
+            };
+            let lines = drawing.lines.len() - left.len();
+            let mut out = vec![CommandReply::note(format!("{lines} lines typed"))];
+            if !oblique.is_empty() {
+                let text = format!("proposed as oblique, please check: {}", list(&oblique));
+                out.push(CommandReply::warning(text));
             }
+            out.extend(left.iter().map(|p| proposal_reply(drawing, p)));
+            self.out.extend(out);
             return Ok(());
         }
         let mut lines = Vec::new();
@@ -532,6 +537,31 @@ impl SketchSession {
             }
         }
         Ok(())
+    }
+}
+
+/// A proposed type with its alternatives, as a warning.
+fn proposal_reply(drawing: &Drawing, proposal: &TypeProposal) -> CommandReply {
+    let letter = |free: Option<Free>| {
+        free.map_or("inclined".to_owned(), |f| {
+            drawing.letters.letter(f, drawing.section).to_string()
+        })
+    };
+    let likeliest = letter(Some(proposal.free));
+    let types = std::iter::once((likeliest.clone(), proposal.probability))
+        .chain(proposal.alternatives.iter().map(|(free, p)| (letter(*free), *p)))
+        .filter(|t| t.1 >= 0.005);
+    let (names, texts): (Vec<String>, Vec<String>) =
+        types.map(|(t, p)| (t.clone(), format!("{t} ({:.0} %)", 100.0 * p))).unzip();
+    let line = proposal.line;
+    let text = format!("line {line}, {}: {}", drawing.line_text(line), texts.join(", "));
+    CommandReply {
+        next: Some(format!("TYPE {line} AS {likeliest}")),
+        about: ReplySubject::of("proposed-type")
+            .lines([line])
+            .names(&names)
+            .value(proposal.probability),
+        ..CommandReply::warning(text)
     }
 }
 

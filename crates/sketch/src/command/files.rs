@@ -226,6 +226,9 @@ impl SketchSession {
 
     /// `STROKES u v u v …`: lines by their ends, as a host's canvas has them.
     pub(super) fn strokes(&mut self, args: &mut Args) -> Result<(), CommandError> {
+        if args.take("SAMPLES") {
+            return self.pen_stroke(args);
+        }
         let mut strokes = Vec::new();
         while args.at_number() {
             let mut end = || -> Result<[f64; 2], CommandError> {
@@ -241,7 +244,7 @@ impl SketchSession {
     }
 
     /// Refuses too many lines, and lines too far away.
-    fn check_page(&self, size: f64, lines: usize) -> Result<(), CommandError> {
+    pub(super) fn check_page(&self, size: f64, lines: usize) -> Result<(), CommandError> {
         let points = self.active()?.drawing.points.len() + 2 * lines;
         if size > 1e9 || points > super::session::MAX_POINTS {
             return Err(CommandError::new(
@@ -482,7 +485,7 @@ impl SketchSession {
 }
 
 /// Commands for the additions to an object: points, lines, variables, curves.
-fn drawn_since(before: &SketchObject, now: &SketchObject) -> String {
+pub(super) fn drawn_since(before: &SketchObject, now: &SketchObject) -> String {
     let mut out = Vec::new();
     let (a, b) = (&before.drawing, &now.drawing);
     if b.exact != a.exact {

@@ -19,6 +19,7 @@ mod sensitivity;
 mod session;
 mod shapes;
 mod solids;
+mod strokes;
 mod subject;
 mod text;
 mod treatments;

@@ -46,6 +46,11 @@ pub enum SketchCommand {
         /// Its type; `None` to derive it from the slope.
         free: Option<Free>,
     },
+    /// The shapes of a stroke of a pen.
+    Stroke {
+        /// Positions of the pen on the page.
+        samples: Vec<[f64; 2]>,
+    },
     /// The type of a line.
     Type {
         /// The line.
@@ -113,6 +118,10 @@ impl std::fmt::Display for SketchCommand {
             SketchCommand::Line { p, q, free } => {
                 write!(f, "LINE FROM {p} TO {q}")?;
                 free.map_or(Ok(()), |free| write!(f, " TYPE {}", free.spelling()))
+            }
+            SketchCommand::Stroke { samples } => {
+                f.write_str("STROKES SAMPLES")?;
+                samples.iter().try_for_each(|[u, v]| write!(f, " {} {}", plain(*u), plain(*v)))
             }
             SketchCommand::Type { line, free } => write!(f, "TYPE {line} AS {}", free.spelling()),
             SketchCommand::Dimension { name, measure, value: v } => {

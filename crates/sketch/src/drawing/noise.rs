@@ -61,6 +61,8 @@ pub(crate) struct Verdict {
     pub group: usize,
     /// Probability of the axis by this line alone.
     pub alone: f64,
+    /// Probability of each axis by the strokes.
+    pub axes: [f64; 3],
 }
 
 /// A line as it is judged.
@@ -354,13 +356,18 @@ fn judge(
     let free = rare * mean;
     let all = principal.iter().sum::<f64>() + free;
     if all <= 0.0 {
-        return Verdict { axis: None, share: 1.0, group: 0, alone: 1.0 };
+        return Verdict { axis: None, share: 1.0, group: 0, alone: 1.0, axes: [0.0; 3] };
+    }
+    let mut shares = [0.0; 3];
+    for ((axis, _), p) in axes.iter().zip(&principal) {
+        shares[axis.index()] = p / all;
     }
     let best = (0..axes.len()).max_by(|&a, &b| principal[a].total_cmp(&principal[b]));
     match best.filter(|&k| principal[k] > free) {
         Some(k) => {
-            Verdict { axis: Some(axes[k].0), share: principal[k] / all, group: 0, alone: 1.0 }
+            let (axis, share) = (Some(axes[k].0), principal[k] / all);
+            Verdict { axis, share, group: 0, alone: 1.0, axes: shares }
         }
-        None => Verdict { axis: None, share: free / all, group: 0, alone: 1.0 },
+        None => Verdict { axis: None, share: free / all, group: 0, alone: 1.0, axes: shares },
     }
 }

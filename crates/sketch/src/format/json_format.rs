@@ -4,12 +4,12 @@ use crate::format::json::Json;
 use crate::format::script::measure_text;
 use crate::{
     CoordinateAxis, DimensionLayout, DimensionRole, FaceId, LineId, LineTypeSource, Loose, Mass,
-    Planes, PointId, SketchFace, SketchObject, SketchSolid,
+    Planes, PointId, SketchFace, SketchObject, SketchSolid, TypeProposal,
 };
 use moldloft_num::Vec3;
 
 /// A line with its type, and how that is known.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct LineData {
     /// Its label.
     pub id: LineId,
@@ -21,6 +21,8 @@ pub struct LineData {
     pub source: LineTypeSource,
     /// Confidence of the type, from 0 to 1.
     pub certainty: f64,
+    /// The likeliest type of a line without one, if the object has a certainty.
+    pub proposal: Option<TypeProposal>,
 }
 
 /// Data of a finished (or unfinished) object, for hosts.
@@ -71,12 +73,18 @@ pub fn object_data(
         points.extend(new.map(|v| (v.id, v.at.to_array().map(Some))));
         points.sort_by_key(|p| p.0);
     }
+    let untyped = |p: &TypeProposal| object.drawing.lines[&p.line].free.is_none();
+    let proposals: Vec<TypeProposal> = match object.drawing.certainty > 0.0 {
+        true => object.drawing.type_proposals().into_iter().filter(untyped).collect(),
+        false => vec![],
+    };
     let lines = object.drawing.lines.iter().map(|(id, l)| LineData {
         id: *id,
         ends: [l.p, l.q],
         free: l.free.map_or("", crate::Free::spelling),
         source: l.source,
         certainty: if l.source == LineTypeSource::User { 1.0 } else { l.confidence },
+        proposal: proposals.iter().find(|p| p.line == *id).cloned(),
     });
     let mass = solid.as_ref().map(SketchSolid::mass);
     let flat = object.drawing.section.is_some();
@@ -132,6 +140,7 @@ impl ObjectData {
                 ("type", line.free.into()),
                 ("source", line.source.word().into()),
                 ("certainty", line.certainty.into()),
+                ("proposal", line.proposal.as_ref().map(proposal_json).into()),
             ])
         });
         let faces = self.faces.iter().map(|(id, f)| {
@@ -173,6 +182,16 @@ impl ObjectData {
     }
 }
 
+/// A proposed type: type, probability, alternatives; null for an inclined line without a type.
+fn proposal_json(proposal: &TypeProposal) -> Json {
+    let one = |free: Option<crate::Free>, p: f64| {
+        [("type", free.map(crate::Free::spelling).into()), ("probability", Json::from(p))]
+    };
+    let others = proposal.alternatives.iter().map(|(free, p)| Json::map(one(*free, *p)));
+    let own = one(Some(proposal.free), proposal.probability);
+    Json::map(own.into_iter().chain([("alternatives", Json::list(others))]))
+}
+
 /// The JSON form: format and version, the fields of the object as data, and the commands that make
 /// it ([`crate::script`]), which are what is read back.
 pub fn to_json(object: &SketchObject, script: &str) -> Json {
@@ -201,6 +220,7 @@ pub fn to_json(object: &SketchObject, script: &str) -> Json {
         ("axes", Json::list(d.projection.angle_deg.map(Json::from))),
         ("scale", Json::list(d.projection.scale.map(Json::from))),
         ("section", d.section.map(CoordinateAxis::letter).into()),
+        ("certainty", d.certainty.into()),
         ("points", Json::list(points)),
         ("lines", Json::list(lines)),
         ("script", Json::list(script.lines().map(Json::from))),

@@ -195,7 +195,7 @@ impl PageShapes {
 }
 
 /// The point drawn at a position.
-fn point_at(drawing: &Drawing, at: [f64; 2], tolerance: f64) -> Option<PointId> {
+pub(crate) fn point_at(drawing: &Drawing, at: [f64; 2], tolerance: f64) -> Option<PointId> {
     let near = |p: &crate::DrawnPoint| (p.u - at[0]).abs().max((p.v - at[1]).abs()) <= tolerance;
     drawing.points.iter().find(|(_, p)| near(p)).map(|(id, _)| *id)
 }
@@ -215,7 +215,7 @@ fn neighbour(drawing: &Drawing, m: PointId, corner: [f64; 2], to: [f64; 2]) -> O
 }
 
 /// The name of a variable for a radius: one for all arcs of it.
-fn radius_name(object: &mut SketchObject, radius: f64) -> DimensionExpr {
+pub(crate) fn radius_name(object: &mut SketchObject, radius: f64) -> DimensionExpr {
     let same = |v: &&Variable| {
         v.name.starts_with('R')
             && v.value.literal().is_some_and(|x| (x - radius).abs() <= 1e-9 * radius)
@@ -233,7 +233,7 @@ fn radius_name(object: &mut SketchObject, radius: f64) -> DimensionExpr {
     DimensionExpr::parse(&name).unwrap_or_else(|_| DimensionExpr::number(radius))
 }
 
-fn add_curve(
+pub(crate) fn add_curve(
     object: &mut SketchObject,
     kind: CurveKind,
     points: Vec<PointId>,

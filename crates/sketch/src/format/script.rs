@@ -324,6 +324,9 @@ fn write(object: &SketchObject, out: &mut String) -> std::fmt::Result {
     if drawing.exact {
         writeln!(out, "SET EXACT ON")?;
     }
+    if drawing.certainty != 0.0 {
+        writeln!(out, "SET CERTAINTY {}", plain(drawing.certainty))?;
+    }
     let p = &drawing.projection;
     let [a, b, c] = p.angle_deg.map(plain);
     write!(out, "AXES {a} {b} {c}")?;
