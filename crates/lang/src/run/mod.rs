@@ -28,3 +28,4 @@ mod unused;
 pub(crate) mod usage;
 pub mod weight;
 pub mod whole;
+pub mod whole_groups;

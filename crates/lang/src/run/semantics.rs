@@ -10,7 +10,7 @@ use crate::functions::files::predeclared;
 use crate::run::declared_lists::declared_list;
 use crate::run::parts::{self, StatementParts};
 use crate::run::unused;
-use crate::run::whole::WHOLE_GROUPS;
+use crate::run::whole_groups::WHOLE_GROUPS;
 use crate::source::module::{Module, Modules, Name, RoutineAt};
 use crate::source::scope::RecordAt;
 use crate::value::variables::described;

@@ -9,6 +9,7 @@ use crate::model_file::header;
 use crate::run::interpreter::Interpreter;
 use crate::source::fault_location::unplaced;
 use crate::source::module::Module;
+pub use crate::run::whole_groups::WHOLE_GROUPS;
 pub use crate::value::member::not_finite;
 use moldloft_diag::{Diagnostic, Span};
 use moldloft_hydro::{Body, Hydrostatics, Symmetry, USUAL_ACCURACY, hydrostatics};
@@ -32,9 +33,6 @@ pub fn named<T: Real>(h: &Hydrostatics<T>) -> Vec<(&'static str, Value<T>)> {
     vector("waterplane_centre", h.waterplane.as_ref().map(|w| w.centre));
     all
 }
-
-/// The names of the groups of numbers.
-pub const WHOLE_GROUPS: [&str; 3] = ["mesh", "mesh_quality", "hydrostatics"];
 
 /// The numbers of the panels of a whole model: measures, or with the group `mesh_quality` those of
 /// its worst panels.
