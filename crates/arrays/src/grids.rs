@@ -1,12 +1,11 @@
 //! Structured grids: interpolated from edges and faces, smoothed, measured.
 
-use crate::value::{BlockArg, GridArg, Points, distinct_neighbours, gathered, surface};
+use crate::value::{BlockArg, GridArg, Points, surface};
 use moldloft_budget::Budget;
 use moldloft_grid::{
-    Blend, Elliptic, Faces, FailureCause, GridError, GridSide, Hyperbolic, MarchBoundary, Method,
-    PeriodicEdges, QualityMetric, Smoothed, Stop, Support, SurfaceGrid, Wall, elliptic_until,
-    folded_cells_until, framed, hyperbolic_curve_until, hyperbolic_until, quality_until,
-    transfinite_block_until, transfinite_until,
+    Blend, Elliptic, Faces, FailureCause, GridError, GridSide, JoinFault, Method, PeriodicEdges,
+    QualityMetric, Smoothed, SurfaceGrid, Wall, elliptic_until, folded_cells_until, framed,
+    quality_until, transfinite_block_until, transfinite_until,
 };
 use moldloft_num::{Order, Real, Surface, Vec3};
 use moldloft_registry::{
@@ -74,11 +73,28 @@ pub fn fault(error: GridError, field: FieldId) -> CallError {
         GridError::NoNormal { .. } => {
             with("no-direction").expected("a surface with a normal at every point")
         }
+        GridError::Join(fault) => match *fault {
+            JoinFault::Surface { surface, cause } => {
+                return self::fault(*cause, field).in_item(surface - 1);
+            }
+            JoinFault::NotOpen { .. } | JoinFault::Open { .. } => {
+                with("unused-argument").expected("conditions of open edges")
+            }
+            JoinFault::NotPlane { .. } => with("not-plane")
+                .expected("open edges in the plane of symmetry")
+                .help("state the condition of the edge, as sides = \"symmetry y, 2 jn free\""),
+            JoinFault::Hanging { .. } => with("edges-apart")
+                .expected("edges whose points are those of the other edge")
+                .help("give both edges the same points, or split the longer one where the other ends"),
+            JoinFault::TwoCells { .. } => with("no-direction")
+                .expected("at least three cells round a point inside the surfaces"),
+            _ => with("no-front").expected("surfaces that are one front, each edge common to at most two"),
+        },
     }
     .in_field(field)
 }
 
-fn unknown(word: &str, what: &str, expected: String, field: FieldId) -> CallError {
+pub(crate) fn unknown(word: &str, what: &str, expected: String, field: FieldId) -> CallError {
     CallError::new("unknown-word", format!("unknown {what} \"{word}\""))
         .expected(expected)
         .found(format!("\"{word}\""))
@@ -200,7 +216,7 @@ fn fault_of_count(n: usize, field: FieldId) -> CallError {
 }
 
 /// The edges by the names of the language.
-const EDGES: [(&str, GridSide); 4] = [
+pub(crate) const EDGES: [(&str, GridSide); 4] = [
     ("i1", GridSide::FirstI),
     ("im", GridSide::LastI),
     ("j1", GridSide::FirstJ),
@@ -508,201 +524,6 @@ fn on_surface<T: Scalar>(
             .in_field(EllipticGrid::<T>::ON));
     }
     Ok([uv.iter().map(|p| p[0]).collect(), uv.iter().map(|p| p[1]).collect()])
-}
-
-/// A grid marched off a surface or a curve by the hyperbolic equations (Steger and Chaussee 1980;
-/// Chan and Steger 1992): its lines leave at right angles, and its layers are at given heights.
-///
-/// Off a surface, along s_i x s_j: the value is a block, the surface its first layer. Off a curve,
-/// to the left of its direction for a view against `normal`: the value is the surface whose line
-/// g[k,] is layer k, in the plane of the curve or on the surface `on` (a collar). The first layer
-/// has its height everywhere, also at corners and sharp tails; heights farther out are means.
-/// `sides` gives conditions at edges, as "i1 pole, j1 symmetry z, jn symmetry z": "pole" for an
-/// edge that is one point; "symmetry x", "y" or "z" for an edge in a symmetry plane of constant x,
-/// y or z; "constant x", "y" or "z" for an edge that only keeps that coordinate; "periodic" for two
-/// coincident edges; edges without a condition are free. The ends of a curve are "i1" and "im".
-/// Every cell is tested; a layer that would fold is marched with weaker constraints and more
-/// smoothing, or is an error with layer, position and cause. `stop` ends a march early: "keep"
-/// (below the layer that cannot be marched), "jacobian 0.1", "skew 0.9", "growth 1.5" (below the
-/// first layer with a worse cell), "isotropic" (with the first layer whose cells are as high as
-/// long).
-#[derive(Kind)]
-#[kind(
-    forward,
-    class = Any,
-    function,
-    name = "hyperbolic",
-    example = "curve c = uniform(0, 1, 9) * {1, 0, 0}; \
-               surface g = hyperbolic(c, list(0, 0.1, 0.3)); assert |g[3,5] - {0.5, 0.3, 0}| < 1e-9;"
-)]
-pub struct HyperbolicGrid<T: Scalar> {
-    /// The surface, or the curve.
-    s: Value<T>,
-    /// The distances of the layers, the first 0.
-    heights: crate::value::Farray<T>,
-    /// Conditions at the edges: "i1", "im", "j1", "jn" with "pole", "free", "periodic", "symmetry x", "symmetry y",
-    /// "symmetry z", "constant x", "constant y" or "constant z".
-    #[field(default = "")]
-    sides: Arc<str>,
-    /// Strength of the smoothing of converging lines; 0: none.
-    #[field(default = 1, min = 0, max = 10)]
-    smoothing: T,
-    /// Normal of the plane of a curve, default z; with `on`, the visible side of the surface.
-    normal: Option<Vec3<T>>,
-    /// When the march ends early: "keep", "jacobian 0.1", "skew 0.9", "growth 1.5" or "isotropic".
-    #[field(default = "")]
-    stop: Arc<str>,
-    /// The surface that a grid off a curve stays on.
-    on: Option<SurfaceRef<T>>,
-}
-
-impl<T: Scalar> Build<T> for HyperbolicGrid<T> {
-    fn build(self, context: &Context) -> Result<Value<T>, CallError> {
-        let heights = self.heights.row().map_err(|fault| fault.in_field(Self::HEIGHTS))?;
-        let start = gathered(&self.s);
-        let is_curve =
-            matches!(&*start, Value::Vectors(a) if matches!(a.shape, ArrayShape::Row(_)));
-        if let Value::Vectors(a) = &*start {
-            extended(&a.planes, Self::S)?;
-        }
-        let options = Hyperbolic {
-            heights,
-            sides: sides(&self.sides, is_curve, Self::SIDES)?,
-            smoothing: self.smoothing.re(),
-            stop: stop(&self.stop, Self::STOP)?,
-        };
-        let marched = if is_curve {
-            let Points(curve) =
-                Points::from_value(&start).map_err(|fault| fault.in_field(Self::S))?;
-            distinct_neighbours(&curve, Self::S)?;
-            let support: Box<dyn Support<T>> = match &self.on {
-                Some(surface) => {
-                    let side = self.normal.map(|normal| normal.re());
-                    Box::new(OrientedSurface { surface: surface.clone(), side })
-                }
-                None => {
-                    let normal = self.normal.unwrap_or_else(|| Vec3::of(0.0, 0.0, 1.0));
-                    let unit = normal.normalized().ok_or_else(|| {
-                        CallError::new("no-direction", "the normal has no length")
-                            .expected("a vector that is not zero")
-                            .in_field(Self::NORMAL)
-                    })?;
-                    Box::new(InPlane { normal: unit })
-                }
-            };
-            hyperbolic_curve_until(&curve, &*support, &options, &context.budget)
-        } else {
-            if self.on.is_some() {
-                return Err(CallError::new(
-                    "unused-argument",
-                    "`on` applies to grids marched off curves",
-                )
-                .expected("a curve to march from")
-                .in_field(Self::ON));
-            }
-            let GridArg(grid) =
-                GridArg::from_value(&start).map_err(|fault| fault.in_field(Self::S))?;
-            hyperbolic_until(&grid, &options, &context.budget)
-        };
-        let marched = marched.map_err(|error| match error {
-            GridError::Heights { .. } => fault(error, Self::HEIGHTS),
-            error => fault(error, Self::S),
-        })?;
-        if let Some(reason) = &marched.report.stopped {
-            let layers = marched.report.layers;
-            context.remark(
-                "stopped-early",
-                format!("the march ends with layer {layers}: {reason}"),
-                "the value contains the layers up to this one",
-            );
-        }
-        let mut layers = marched.layers.into_iter().map(surface);
-        Ok(if is_curve {
-            layers.next().expect("one grid off a curve")
-        } else {
-            Value::block(layers).expect("layers of one shape")
-        })
-    }
-}
-
-struct InPlane<T> {
-    normal: Vec3<T>,
-}
-
-impl<T: Real> Support<T> for InPlane<T> {
-    fn project(&self, points: &[Vec3<T>]) -> Vec<(Vec3<T>, Vec3<T>)> {
-        points.iter().map(|p| (*p, self.normal)).collect()
-    }
-}
-
-/// A surface of the language, seen from the side of a vector.
-struct OrientedSurface<T: Scalar> {
-    surface: SurfaceRef<T>,
-    side: Option<Vec3>,
-}
-
-impl<T: Scalar> Support<T> for OrientedSurface<T> {
-    fn project(&self, points: &[Vec3<T>]) -> Vec<(Vec3<T>, Vec3<T>)> {
-        let (uv, _) = crate::locate::nearest_parameters(&self.surface, points);
-        let foot = |[u, v]: [T; 2]| {
-            let jet = self.surface.jet(u, v, Order::First);
-            let unit = jet.u.cross(jet.v).normalized().unwrap_or_else(Vec3::zero);
-            let away = self.side.is_some_and(|side| unit.re().dot(side) < 0.0);
-            (jet.p, if away { -unit } else { unit })
-        };
-        uv.into_iter().map(foot).collect()
-    }
-}
-
-fn stop(text: &str, field: FieldId) -> Result<Stop, CallError> {
-    let mut stop = Stop::default();
-    for part in text.split(',').map(str::trim).filter(|part| !part.is_empty()) {
-        let words: Vec<&str> = part.split_whitespace().collect();
-        let number = words.get(1).and_then(|word| word.parse::<f64>().ok());
-        match (words[0], number, words.len()) {
-            ("keep", None, 1) => stop.keep = true,
-            ("isotropic", None, 1) => stop.isotropic = true,
-            ("jacobian", Some(x), 2) if (0.0..1.0).contains(&x) => stop.jacobian = x,
-            ("skew", Some(x), 2) if x > 0.0 && x <= 1.0 => stop.skewness = x,
-            ("growth", Some(x), 2) if x > 1.0 && x.is_finite() => stop.growth = x,
-            _ => {
-                let expected =
-                    "\"keep\", \"isotropic\", \"jacobian 0.1\", \"skew 0.9\" or \"growth 1.5\"";
-                return Err(unknown(part, "criterion", expected.to_string(), field));
-            }
-        }
-    }
-    Ok(stop)
-}
-
-fn sides(text: &str, is_curve: bool, field: FieldId) -> Result<[MarchBoundary; 4], CallError> {
-    let mut sides = [MarchBoundary::Free; 4];
-    for part in text.split(',').map(str::trim).filter(|part| !part.is_empty()) {
-        let words: Vec<&str> = part.split_whitespace().collect();
-        let bad = || {
-            let expected =
-                "\"i1 pole\", \"j1 symmetry z\", \"im periodic\" and the like".to_string();
-            unknown(part, "side", expected, field)
-        };
-        let at = EDGES.iter().position(|(name, _)| Some(name) == words.first());
-        let at = at.filter(|at| !is_curve || *at < 2).ok_or_else(bad)?;
-        let axis = |word: &str| ["x", "y", "z"].iter().position(|axis| *axis == word);
-        sides[at] = match words[1..] {
-            ["free"] => MarchBoundary::Free,
-            ["pole"] if !is_curve => MarchBoundary::Pole,
-            ["periodic"] => MarchBoundary::Periodic,
-            ["symmetry", word] => MarchBoundary::Symmetry(axis(word).ok_or_else(bad)?),
-            ["constant", word] => MarchBoundary::Constant(axis(word).ok_or_else(bad)?),
-            _ => return Err(bad()),
-        };
-    }
-    for pair in [[0, 1], [2, 3]] {
-        // Two edges are one line, or neither is the other.
-        if pair.iter().any(|k| sides[*k] == MarchBoundary::Periodic) {
-            pair.iter().for_each(|k| sides[*k] = MarchBoundary::Periodic);
-        }
-    }
-    Ok(sides)
 }
 
 fn metric(word: &str, field: FieldId) -> Result<QualityMetric, CallError> {

@@ -20,6 +20,7 @@ mod distribution;
 mod evaluate;
 mod grids;
 mod locate;
+mod marching;
 mod masks;
 mod moves;
 mod reduce;
@@ -136,7 +137,7 @@ pub fn rows() -> Vec<Row> {
         locate::Intersections,
         grids::Tfi,
         grids::EllipticGrid,
-        grids::HyperbolicGrid,
+        marching::HyperbolicGrid,
         volumes::EllipticBlock,
         section_grids::OGrid,
         section_grids::CGrid,

@@ -1,7 +1,8 @@
 //! Errors of grids, with the position.
 
 use crate::GridSide;
-use crate::marching::outcome::MarchFailure;
+use crate::marching::JoinFault;
+use crate::marching::outcome::{MarchFailure, MarchPlace};
 use moldloft_budget::Spent;
 use std::fmt;
 
@@ -95,9 +96,11 @@ pub enum GridError {
     },
     /// A surface has no normal at a point.
     NoNormal {
-        /// Its indices, from 1.
-        at: [usize; 2],
+        /// The point.
+        at: MarchPlace,
     },
+    /// Surfaces that are no front together.
+    Join(Box<JoinFault>),
 }
 
 impl fmt::Display for GridError {
@@ -139,7 +142,8 @@ impl fmt::Display for GridError {
                     "the edges are not periodic: point [{i},{j}] is {gap} off the place of its partner"
                 )
             }
-            Self::NoNormal { at: [i, j] } => write!(f, "no normal at point [{i},{j}]"),
+            Self::NoNormal { at } => write!(f, "no normal at point {at}"),
+            Self::Join(fault) => write!(f, "{fault}"),
         }
     }
 }

@@ -39,8 +39,9 @@ pub use hex_mesh::{
     BoundaryPatch, FaceNames, HEX_FACES, HexMesh, MeshCheck, shared_nodes, shared_nodes_within,
 };
 pub use marching::{
-    FailureCause, Hyperbolic, MarchBoundary, MarchFailure, MarchReport, Marched, Stop, StopReason,
-    Support, hyperbolic, hyperbolic_curve, hyperbolic_curve_until, hyperbolic_until,
+    FailureCause, Hyperbolic, JoinFault, MarchBoundary, MarchFailure, MarchPlace, MarchReport,
+    Marched, MarchedBlocks, OpenEdges, Stop, StopReason, Support, hyperbolic, hyperbolic_curve,
+    hyperbolic_curve_until, hyperbolic_surfaces, hyperbolic_surfaces_until, hyperbolic_until,
 };
 pub use pole_cells::PoleCell;
 pub use quality::{QualityMetric, folded_cells, folded_cells_until, quality, quality_until};

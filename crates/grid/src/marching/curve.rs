@@ -1,9 +1,9 @@
 //! Marching off a curve: in its plane, or on a surface that the grid stays on (a collar).
 
 use super::crossing::{BoundaryPart, edges_cross, first_crossing, lowered};
-use super::front::{self, Front, MarchStep};
-use super::line::{BlockTridiagonal, Matrix, mirrored, smoothed};
-use super::outcome::{MarchFailure, Marched};
+use super::front::{self, EDGE_SHARE, Front, MarchStep};
+use super::line::{BlockTridiagonal, LineEnd, Matrix, smoothed};
+use super::outcome::{MarchFailure, MarchPlace, Marched};
 use super::report::{self, Worst};
 use super::settings::{Hyperbolic, MarchBoundary};
 use crate::{GridError, SurfaceGrid};
@@ -36,7 +36,9 @@ pub fn hyperbolic_curve<T: Real>(
     normal: Vec3<T>,
     options: &Hyperbolic<T>,
 ) -> Result<Marched<T>, GridError> {
-    let unit = normal.normalized().ok_or(GridError::NoNormal { at: [1, 1] })?;
+    let unit = normal
+        .normalized()
+        .ok_or(GridError::NoNormal { at: MarchPlace { surface: None, at: [1, 1] } })?;
     hyperbolic_curve_until(curve, &MarchPlane { normal: unit }, options, &Budget::default())
 }
 
@@ -122,27 +124,15 @@ pub(super) const ACUTE: f64 = 0.173_648_177_666_930_33;
 impl<T: Real> CurveFront<'_, T> {
     fn neighbours(&self, r: &[Vec3<T>], k: usize) -> [Vec3<T>; 2] {
         let n = r.len();
-        let beyond = |end: usize, here: Vec3<T>, inner: Vec3<T>| {
-            let mut ghost = (here * T::from(2.0) - inner).to_array();
-            if let MarchBoundary::Symmetry(axis) = self.ends[end] {
-                let inner = inner.to_array();
-                for c in 0..3 {
-                    if c != axis {
-                        ghost[c] = inner[c];
-                    }
-                }
-            }
-            ghost.into()
-        };
         let next = match k + 1 < n {
             true => r[k + 1],
             false if self.closed => r[0],
-            false => beyond(1, r[k], r[k - 1]),
+            false => self.ends[1].beyond(r[k], r[k - 1]),
         };
         let last = match k > 0 {
             true => r[k - 1],
             false if self.closed => r[n - 1],
-            false => beyond(0, r[0], r[1]),
+            false => self.ends[0].beyond(r[0], r[1]),
         };
         [next, last]
     }
@@ -178,11 +168,12 @@ impl<T: Real> CurveFront<'_, T> {
         }
         let last = to.len() - 1;
         for (end, k) in [(0, 0), (1, last)] {
-            if let MarchBoundary::Symmetry(axis) | MarchBoundary::Constant(axis) = self.ends[end] {
-                let mut p = to[k].to_array();
-                p[axis] = from[k][axis];
-                to[k] = p.into();
+            let kept = self.ends[end].kept();
+            let mut p = to[k].to_array();
+            for c in (0..3).filter(|c| kept[*c]) {
+                p[c] = from[k][c];
             }
+            to[k] = p.into();
         }
     }
 
@@ -207,8 +198,12 @@ impl<T: Real> Front<T> for CurveFront<'_, T> {
         &self.wall
     }
 
-    fn place(&self, k: usize) -> [usize; 2] {
-        [k + 1, 1]
+    fn cell_place(&self, cell: usize) -> (MarchPlace, usize) {
+        (self.place(cell), cell)
+    }
+
+    fn place(&self, k: usize) -> MarchPlace {
+        MarchPlace { surface: None, at: [k + 1, 1] }
     }
 
     fn first_layer(&self, height: T) -> Result<Option<Vec<Vec3<T>>>, MarchFailure> {
@@ -241,11 +236,17 @@ impl<T: Real> Front<T> for CurveFront<'_, T> {
         Ok(Some(layer))
     }
 
-    fn shortest_edge(&self, r: &[Vec3<T>]) -> (f64, usize) {
+    fn step_limit(&self, r: &[Vec3<T>], _: bool) -> (f64, usize) {
         let n = r.len();
         let count = if self.closed { n } else { n - 1 };
         let edges = (0..count).map(|k| (r[(k + 1) % n].re().distance(r[k].re()), k));
-        edges.fold((f64::INFINITY, 0), |best, edge| if edge.0 < best.0 { edge } else { best })
+        let shortest =
+            edges.fold((f64::INFINITY, 0), |best, edge| if edge.0 < best.0 { edge } else { best });
+        (EDGE_SHARE * shortest.0, shortest.1)
+    }
+
+    fn has_long_steps(&self) -> bool {
+        false
     }
 
     fn mean_edge(&self, r: &[Vec3<T>]) -> f64 {
@@ -279,7 +280,8 @@ impl<T: Real> Front<T> for CurveFront<'_, T> {
         };
         let reach: Vec<T> =
             nodes.iter().map(|node| s * d * 2.0 / (node.length() * node.length())).collect();
-        let mut volumes = smoothed(&reach, &plain, self.closed);
+        let ends = (!self.closed).then_some([LineEnd::Open; 2]);
+        let mut volumes = smoothed(&reach, &plain, ends);
         let spans: Vec<(T, T)> = (0..n)
             .map(|k| {
                 let [next, last] = self.neighbours(before, k);
@@ -352,9 +354,9 @@ impl<T: Real> Front<T> for CurveFront<'_, T> {
             }
             let open_end = |end: usize| !self.closed && k == [0, n - 1][end];
             if open_end(0) {
-                self.close_end(0, &mut system.middle[k], &low, &mut high);
+                self.ends[0].close(&mut system.middle[k], &low, &mut high);
             } else if open_end(1) {
-                self.close_end(1, &mut system.middle[k], &high, &mut low);
+                self.ends[1].close(&mut system.middle[k], &high, &mut low);
             }
             if !open_end(0) {
                 system.low[k] = low;
@@ -404,26 +406,5 @@ impl<T: Real> Front<T> for CurveFront<'_, T> {
             worst.take(k, report::quad(corners, ups[k].re()));
         }
         worst
-    }
-}
-
-impl<T: Real> CurveFront<'_, T> {
-    /// The unknown beyond an end: the same step as the end's own, or its mirror image.
-    fn close_end(
-        &self,
-        end: usize,
-        middle: &mut Matrix<T>,
-        outer: &Matrix<T>,
-        inner: &mut Matrix<T>,
-    ) {
-        let (target, term) = match self.ends[end] {
-            MarchBoundary::Symmetry(axis) => (inner, mirrored(outer, axis)),
-            _ => (middle, *outer),
-        };
-        for a in 0..3 {
-            for b in 0..3 {
-                target[a][b] += term[a][b];
-            }
-        }
     }
 }

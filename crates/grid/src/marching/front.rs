@@ -1,6 +1,6 @@
 //! The march of curves and surfaces: layers, sub-steps, and retries if cells fold.
 
-use super::outcome::{FailureCause, MarchFailure};
+use super::outcome::{FailureCause, MarchFailure, MarchPlace};
 use super::report::Worst;
 use super::settings::Hyperbolic;
 use crate::GridError;
@@ -29,22 +29,25 @@ pub(super) trait Front<T: Real> {
     /// The first layer along the bisecting normals, or `None` where corners are so tight that it has to be
     /// approached by steps.
     fn first_layer(&self, height: T) -> Result<Option<Vec<Vec3<T>>>, MarchFailure>;
-    /// The shortest edge, and its node.
-    fn shortest_edge(&self, r: &[Vec3<T>]) -> (f64, usize);
+    /// The largest step, and the node that limits it; `tight` is half the shortest edge anywhere.
+    fn step_limit(&self, r: &[Vec3<T>], tight: bool) -> (f64, usize);
+    /// True if steps can be longer than the tight limit.
+    fn has_long_steps(&self) -> bool;
     fn mean_edge(&self, r: &[Vec3<T>]) -> f64;
     /// The points after a step.
     fn step(&self, step: MarchStep<'_, T>, budget: &Budget) -> Vec<Vec3<T>>;
     /// The least scaled Jacobian, and its cell, between two layers.
     fn worst_cell(&self, below: &[Vec3<T>], above: &[Vec3<T>]) -> Worst;
-    /// The indices, from 1, of a node or cell.
-    fn place(&self, k: usize) -> [usize; 2];
+    fn place(&self, node: usize) -> MarchPlace;
+    /// The place of a cell, and its first node.
+    fn cell_place(&self, cell: usize) -> (MarchPlace, usize);
     /// Two nodes of the wall above which the boundary of these layers crosses itself.
     fn crossing(&self, layers: &[Vec<Vec3<T>>]) -> Option<[usize; 2]>;
 }
 
 /// The largest step, relative to the shortest edge: beyond it some corners of 45 to 60 degrees
 /// fail.
-const EDGE_SHARE: f64 = 0.5;
+pub(super) const EDGE_SHARE: f64 = 0.5;
 
 /// The largest step, relative to the height reached.
 const HEIGHT_SHARE: f64 = 0.15;
@@ -55,9 +58,24 @@ const CAP: f64 = 1.15;
 /// No march makes more steps.
 const MOST_STEPS: usize = 40_000;
 
-/// Successive settings: the standard ones; without the cap on volumes, as acute corners with
-/// clustered points need; and with more dissipation.
-const LADDER: [(Option<f64>, f64); 3] = [(Some(CAP), 1.0), (None, 1.0), (None, 3.0)];
+/// Settings of an attempt.
+#[derive(Clone, Copy)]
+struct Rung {
+    /// Reported number.
+    number: usize,
+    tight: bool,
+    cap: Option<f64>,
+    dissipation: f64,
+}
+
+/// Successive settings: the standard ones, with long steps where lines do not converge; with short steps; without
+/// the cap on volumes, as acute corners with clustered points need; and with more dissipation.
+const LADDER: [Rung; 4] = [
+    Rung { number: 1, tight: false, cap: Some(CAP), dissipation: 1.0 },
+    Rung { number: 1, tight: true, cap: Some(CAP), dissipation: 1.0 },
+    Rung { number: 2, tight: true, cap: None, dissipation: 1.0 },
+    Rung { number: 3, tight: true, cap: None, dissipation: 3.0 },
+];
 
 pub(super) struct MarchOutcome<T> {
     pub layers: Vec<Vec<Vec3<T>>>,
@@ -75,9 +93,8 @@ pub(super) fn march<T: Real>(
     budget: &Budget,
 ) -> Result<MarchOutcome<T>, GridError> {
     let mut farthest: Option<MarchOutcome<T>> = None;
-    for (k, (cap, dissipation)) in LADDER.into_iter().enumerate() {
-        let mut outcome = attempt(front, options, cap, dissipation * options.smoothing, budget)?;
-        outcome.rung = k + 1;
+    for rung in LADDER.into_iter().filter(|rung| rung.tight || front.has_long_steps()) {
+        let outcome = attempt(front, options, rung, budget)?;
         let first_fails = matches!(
             outcome.failure,
             Some(MarchFailure { cause: FailureCause::CornerTooTight { .. }, .. })
@@ -129,13 +146,16 @@ fn below_crossing<T: Real>(
 fn attempt<T: Real>(
     front: &impl Front<T>,
     options: &Hyperbolic<T>,
-    cap: Option<f64>,
-    dissipation: f64,
+    rung: Rung,
     budget: &Budget,
 ) -> Result<MarchOutcome<T>, GridError> {
     let heights = &options.heights;
-    let mut outcome =
-        MarchOutcome { layers: vec![front.wall().to_vec()], steps: 0, rung: 0, failure: None };
+    let mut outcome = MarchOutcome {
+        layers: vec![front.wall().to_vec()],
+        steps: 0,
+        rung: rung.number,
+        failure: None,
+    };
     let mut r = front.wall().to_vec();
     let mut before = r.clone();
     let mut smoothed = vec![T::one(); r.len()];
@@ -145,6 +165,11 @@ fn attempt<T: Real>(
             at: front.place(node),
             wall: front.wall()[node].re(),
             cause,
+        };
+        let folded = |worst: Worst| {
+            let (at, node) = front.cell_place(worst.cell);
+            let wall = front.wall()[node].re();
+            MarchFailure { layer: k + 1, at, wall, cause: FailureCause::Folded(worst.jacobian) }
         };
         let target = heights[k] - heights[k - 1];
         if k == 1 {
@@ -156,8 +181,7 @@ fn attempt<T: Real>(
                 Ok(Some(layer)) => {
                     let worst = front.worst_cell(&r, &layer);
                     if !(worst.jacobian > 0.0) {
-                        outcome.failure =
-                            Some(failure(worst.cell, FailureCause::Folded(worst.jacobian)));
+                        outcome.failure = Some(folded(worst));
                         return Ok(outcome);
                     }
                     before = std::mem::replace(&mut r, layer);
@@ -173,9 +197,10 @@ fn attempt<T: Real>(
             budget.poll()?;
             let rest = target - done;
             let reached = heights[k - 1] + done;
-            let (edge, node) = front.shortest_edge(&r);
-            let mut most = (EDGE_SHARE * edge).min(rest.re());
-            if reached.re() > 0.0 && most < rest.re() {
+            let (limit, node) = front.step_limit(&r, rung.tight);
+            let mut most = limit.min(rest.re());
+            let is_long = !rung.tight && front.step_limit(&r, true).0 < rest.re();
+            if reached.re() > 0.0 && (most < rest.re() || is_long) {
                 most = most.min(HEIGHT_SHARE * reached.re());
             }
             if !(most > 1e-9 * target.re()) {
@@ -196,8 +221,8 @@ fn attempt<T: Real>(
                 s: reached + d,
                 last: heights[heights.len() - 1],
                 smoothed: &mut smoothed,
-                cap: cap.map(|cap| moldloft_num::Real::powf(cap, share)),
-                dissipation,
+                cap: rung.cap.map(|cap| moldloft_num::Real::powf(cap, share)),
+                dissipation: rung.dissipation * options.smoothing,
                 first: reached.re() == 0.0,
             };
             let next = front.step(step, budget);
@@ -208,7 +233,7 @@ fn attempt<T: Real>(
             }
             let worst = front.worst_cell(&r, &next);
             if !(worst.jacobian > 0.0) {
-                outcome.failure = Some(failure(worst.cell, FailureCause::Folded(worst.jacobian)));
+                outcome.failure = Some(folded(worst));
                 return Ok(outcome);
             }
             before = std::mem::replace(&mut r, next);
@@ -217,7 +242,7 @@ fn attempt<T: Real>(
         }
         let worst = front.worst_cell(&outcome.layers[k - 1], &r);
         if !(worst.jacobian > 0.0) {
-            outcome.failure = Some(failure(worst.cell, FailureCause::Folded(worst.jacobian)));
+            outcome.failure = Some(folded(worst));
             return Ok(outcome);
         }
         outcome.layers.push(r.clone());

@@ -26,12 +26,19 @@ impl<T: Real> BlockTridiagonal<T> {
     /// The solution of the line; of a closed one, whose first and last unknowns are neighbours, the last
     /// unknown is solved for by bordering.
     pub fn solved(self, closed: bool) -> Vec<Vec3<T>> {
+        let right = self.right.clone();
+        self.factored(closed).solved(right)
+    }
+
+    /// The factors of the line, for any right side.
+    pub fn factored(self, closed: bool) -> FactoredLine<T> {
         if !closed {
-            return self.eliminated::<false>(self.right.len()).0;
+            return self.eliminated::<false>(self.right.len());
         }
         let last = self.right.len() - 1;
-        let (mut x, border) = self.eliminated::<true>(last);
+        let mut factors = self.eliminated::<true>(last);
         let (low, high) = (&self.low[last], &self.high[last]);
+        let border = &factors.border;
         let (before, after) = (times(low, &border[last - 1]), times(high, &border[0]));
         let mut middle = self.middle[last];
         for r in 0..3 {
@@ -39,23 +46,18 @@ impl<T: Real> BlockTridiagonal<T> {
                 middle[r][c] = middle[r][c] - before[r][c] - after[r][c];
             }
         }
-        let right = self.right[last] - apply(low, x[last - 1]) - apply(high, x[0]);
-        let w = apply(&inverse(&middle), right);
-        for (x, border) in x.iter_mut().zip(&border) {
-            *x -= apply(border, w);
-        }
-        x.push(w);
-        x
+        factors.seam = Some([*low, *high, inverse(&middle)]);
+        factors
     }
 
-    /// The first `count` unknowns by elimination and, with `BORDER`, how each depends on the next one, which
+    /// The factors of the first `count` unknowns and, with `BORDER`, how each depends on the next one, which
     /// closes the line.
-    fn eliminated<const BORDER: bool>(&self, count: usize) -> (Vec<Vec3<T>>, Vec<Matrix<T>>) {
+    fn eliminated<const BORDER: bool>(&self, count: usize) -> FactoredLine<T> {
+        let mut solves: Vec<Matrix<T>> = Vec::with_capacity(count);
         let mut upper: Vec<Matrix<T>> = Vec::with_capacity(count);
-        let mut x: Vec<Vec3<T>> = Vec::with_capacity(count);
         let mut border: Vec<Matrix<T>> = Vec::with_capacity(if BORDER { count } else { 0 });
         for k in 0..count {
-            let (low, mut middle, mut right) = (&self.low[k], self.middle[k], self.right[k]);
+            let (low, mut middle) = (&self.low[k], self.middle[k]);
             let mut side = scaled_identity(T::zero());
             if BORDER && k == 0 {
                 side = *low;
@@ -65,33 +67,80 @@ impl<T: Real> BlockTridiagonal<T> {
             }
             if k > 0 {
                 subtract(&mut middle, &times(low, &upper[k - 1]));
-                right -= apply(low, x[k - 1]);
                 if BORDER {
                     subtract(&mut side, &times(low, &border[k - 1]));
                 }
             }
             let solve = inverse(&middle);
-            x.push(apply(&solve, right));
             upper.push(times(&solve, &self.high[k]));
             if BORDER {
                 border.push(times(&solve, &side));
             }
+            solves.push(solve);
         }
-        for k in (0..count.saturating_sub(1)).rev() {
-            let next = x[k + 1];
-            x[k] -= apply(&upper[k], next);
-            if BORDER {
+        if BORDER {
+            for k in (0..count.saturating_sub(1)).rev() {
                 let product = times(&upper[k], &border[k + 1]);
                 subtract(&mut border[k], &product);
             }
         }
-        (x, border)
+        let low = self.low[..count].to_vec();
+        FactoredLine { low, solves, upper, border, seam: None }
     }
 }
 
-/// Solves (1 + 2 a_k) x_k - a_k (x_(k-1) + x_(k+1)) = v_k: values smoothed over a length of root a points;
-/// nothing passes the ends of an open line.
-pub(super) fn smoothed<T: Real>(a: &[T], v: &[T], closed: bool) -> Vec<T> {
+/// A line of equations with its middle blocks eliminated.
+pub(super) struct FactoredLine<T> {
+    low: Vec<Matrix<T>>,
+    /// Inverses of the middle blocks that elimination leaves.
+    solves: Vec<Matrix<T>>,
+    upper: Vec<Matrix<T>>,
+    /// Dependence on the last unknown of a closed line.
+    border: Vec<Matrix<T>>,
+    /// Low and high block of the last equation of a closed line, and the inverse that is left of its middle one.
+    seam: Option<[Matrix<T>; 3]>,
+}
+
+impl<T: Real> FactoredLine<T> {
+    /// The solution for a right side.
+    pub fn solved(&self, mut right: Vec<Vec3<T>>) -> Vec<Vec3<T>> {
+        let count = self.solves.len();
+        for k in 0..count {
+            if k > 0 {
+                let before = right[k - 1];
+                right[k] -= apply(&self.low[k], before);
+            }
+            right[k] = apply(&self.solves[k], right[k]);
+        }
+        let mut x = right;
+        for k in (0..count.saturating_sub(1)).rev() {
+            let next = x[k + 1];
+            x[k] -= apply(&self.upper[k], next);
+        }
+        if let Some([low, high, solve]) = &self.seam {
+            let rest = x[count] - apply(low, x[count - 1]) - apply(high, x[0]);
+            let w = apply(solve, rest);
+            for (x, border) in x.iter_mut().zip(&self.border) {
+                *x -= apply(border, w);
+            }
+            x[count] = w;
+        }
+        x
+    }
+}
+
+/// The end of a line of values to smooth: nothing passes an open one, beyond a mirrored one is the line's image.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum LineEnd {
+    Open,
+    Mirrored,
+}
+
+/// Solves (1 + 2 a_k) x_k - a_k (x_(k-1) + x_(k+1)) = v_k: values smoothed over a length of root a points, with
+/// the ends of a line that is not closed.
+pub(super) fn smoothed<T: Real>(a: &[T], v: &[T], ends: Option<[LineEnd; 2]>) -> Vec<T> {
+    let closed = ends.is_none();
+    let is = |end: usize, kind: LineEnd| ends.is_some_and(|ends| ends[end] == kind);
     let n = v.len();
     let one = T::one();
     let count = if closed { n - 1 } else { n };
@@ -101,8 +150,10 @@ pub(super) fn smoothed<T: Real>(a: &[T], v: &[T], closed: bool) -> Vec<T> {
     for k in 0..count {
         let first = k == 0 && !closed;
         let last = k + 1 == n;
-        let neighbours = if first || last { one } else { T::from(2.0) };
-        let mut middle = one + a[k] * neighbours;
+        let is_open = (first && is(0, LineEnd::Open)) || (last && is(1, LineEnd::Open));
+        let [low, high] = [last && is(1, LineEnd::Mirrored), first && is(0, LineEnd::Mirrored)]
+            .map(|twice| if twice { a[k] * 2.0 } else { a[k] });
+        let mut middle = one + a[k] * if is_open { one } else { T::from(2.0) };
         let mut right = v[k];
         let mut side = T::zero();
         if closed && k == 0 {
@@ -112,12 +163,12 @@ pub(super) fn smoothed<T: Real>(a: &[T], v: &[T], closed: bool) -> Vec<T> {
             side -= a[k];
         }
         if k > 0 {
-            middle += a[k] * upper[k - 1];
-            right += a[k] * x[k - 1];
+            middle += low * upper[k - 1];
+            right += low * x[k - 1];
             side += a[k] * border[k - 1];
         }
         x.push(right / middle);
-        upper.push(-(a[k] / middle));
+        upper.push(-(high / middle));
         border[k] = side / middle;
     }
     for k in (0..count - 1).rev() {
@@ -142,7 +193,7 @@ pub(super) fn scaled_identity<T: Real>(x: T) -> Matrix<T> {
     [[x, o, o], [o, x, o], [o, o, x]]
 }
 
-fn add<T: Real>(a: &mut Matrix<T>, b: &Matrix<T>) {
+pub(super) fn add<T: Real>(a: &mut Matrix<T>, b: &Matrix<T>) {
     for r in 0..3 {
         for c in 0..3 {
             a[r][c] += b[r][c];

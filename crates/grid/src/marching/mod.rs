@@ -11,15 +11,23 @@
 
 mod crossing;
 mod curve;
+mod fault;
 mod front;
+mod joined;
 mod line;
 pub(crate) mod outcome;
 mod report;
 mod settings;
 mod surface;
+mod surface_front;
+mod topology;
 
 pub use curve::{Support, hyperbolic_curve, hyperbolic_curve_until};
-pub use outcome::{FailureCause, MarchFailure, MarchReport, Marched, StopReason};
+pub use fault::JoinFault;
+pub use joined::{OpenEdges, hyperbolic_surfaces, hyperbolic_surfaces_until};
+pub use outcome::{
+    FailureCause, MarchFailure, MarchPlace, MarchReport, Marched, MarchedBlocks, StopReason,
+};
 pub(crate) use report::hexahedron;
 pub use settings::{Hyperbolic, MarchBoundary, Stop};
 pub use surface::{hyperbolic, hyperbolic_until};

@@ -1,6 +1,6 @@
 //! Result of a march: the report, and the reason of its end.
 
-use crate::SurfaceGrid;
+use crate::{SurfaceGrid, VolumeGrid};
 use moldloft_num::Vec3;
 use std::fmt;
 
@@ -11,6 +11,32 @@ pub struct Marched<T> {
     pub layers: Vec<SurfaceGrid<T>>,
     /// Report of the march.
     pub report: MarchReport,
+}
+
+/// Blocks marched off several surfaces.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MarchedBlocks<T> {
+    /// One for each surface, which is its layer k = 1; points of faces that two blocks share are identical.
+    pub blocks: Vec<VolumeGrid<T>>,
+    /// Report of the march.
+    pub report: MarchReport,
+}
+
+/// A node or cell of a front.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct MarchPlace {
+    /// The surface, from 1, of a front of several.
+    pub surface: Option<usize>,
+    /// The indices, from 1; 1 in the second index off curves.
+    pub at: [usize; 2],
+}
+
+impl fmt::Display for MarchPlace {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let [i, j] = self.at;
+        write!(f, "[{i},{j}]")?;
+        self.surface.map_or(Ok(()), |surface| write!(f, " of surface {surface}"))
+    }
 }
 
 /// Why a march ended before its last height.
@@ -52,8 +78,10 @@ pub struct MarchReport {
     pub rung: usize,
     /// The least scaled Jacobian at a corner of a cell.
     pub jacobian: f64,
-    /// Position: layer above the cell and indices of the cell, from 1.
-    pub at: [usize; 3],
+    /// Position: layer above the cell, from 1, and the cell.
+    pub layer: usize,
+    /// The cell.
+    pub at: MarchPlace,
     /// The largest equiangle skewness of a cell's corners.
     pub skewness: f64,
     /// The least and the greatest distance of the first layer from the wall.
@@ -87,8 +115,8 @@ pub enum FailureCause {
     LinesMeet,
     /// The layer crosses that above another part of the wall, or the wall there.
     LayersMeet {
-        /// The node of that part, from 1; 1 in the second index off curves.
-        other: [usize; 2],
+        /// The node of that part.
+        other: MarchPlace,
         /// The point of the wall there.
         wall: Vec3,
     },
@@ -103,8 +131,8 @@ pub enum FailureCause {
 pub struct MarchFailure {
     /// The layer, from 1 (the wall).
     pub layer: usize,
-    /// The node or cell of it, from 1; 1 in the second index off curves.
-    pub at: [usize; 2],
+    /// The node or cell of it.
+    pub at: MarchPlace,
     /// The point of the wall below it.
     pub wall: Vec3,
     /// Why.
@@ -113,26 +141,25 @@ pub struct MarchFailure {
 
 impl fmt::Display for MarchFailure {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let [i, j] = self.at;
+        let at = self.at;
         let Vec3 { x, y, z } = self.wall;
         let layer = self.layer;
         match &self.cause {
             FailureCause::CornerTooTight { angle, spacing, height, fits } => write!(
                 f,
                 "the first cell of {height:.3e} does not fit into the concave corner of {angle:.1} degrees at \
-                 [{i},{j}], where points are {spacing:.3e} apart: it fits up to {fits:.3e}"
+                 {at}, where points are {spacing:.3e} apart: it fits up to {fits:.3e}"
             ),
             FailureCause::Folded(jacobian) => write!(
                 f,
-                "layer {layer} folds at [{i},{j}] above ({x:.4}, {y:.4}, {z:.4}): scaled Jacobian {jacobian:.3}"
+                "layer {layer} folds at {at} above ({x:.4}, {y:.4}, {z:.4}): scaled Jacobian {jacobian:.3}"
             ),
-            FailureCause::LinesMeet => write!(
+            FailureCause::LinesMeet => {
+                write!(f, "grid lines meet in layer {layer} at {at} above ({x:.4}, {y:.4}, {z:.4})")
+            }
+            FailureCause::LayersMeet { other, wall: Vec3 { x: u, y: v, z: w } } => write!(
                 f,
-                "grid lines meet in layer {layer} at [{i},{j}] above ({x:.4}, {y:.4}, {z:.4})"
-            ),
-            FailureCause::LayersMeet { other: [k, l], wall: Vec3 { x: u, y: v, z: w } } => write!(
-                f,
-                "layer {layer} at [{i},{j}] above ({x:.4}, {y:.4}, {z:.4}) meets the grid at [{k},{l}] above \
+                "layer {layer} at {at} above ({x:.4}, {y:.4}, {z:.4}) meets the grid at {other} above \
                  ({u:.4}, {v:.4}, {w:.4})"
             ),
             FailureCause::TooManySteps(steps) => {
@@ -140,7 +167,7 @@ impl fmt::Display for MarchFailure {
             }
             FailureCause::NotFinite => write!(
                 f,
-                "layer {layer} has no finite solution at [{i},{j}] above ({x:.4}, {y:.4}, {z:.4})"
+                "layer {layer} has no finite solution at {at} above ({x:.4}, {y:.4}, {z:.4})"
             ),
         }
     }

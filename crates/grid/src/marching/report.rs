@@ -160,7 +160,7 @@ pub(super) fn settled<T: Real>(
     }
     let mut stopped = failure.map(StopReason::Failure);
     let mut worst = Worst::none();
-    let mut at = [1, 1, 1];
+    let (mut layer, mut at) = (1, front.cell_place(0).0);
     let mut growth = 1.0f64;
     let stop = &options.stop;
     for k in 1..layers.len() {
@@ -181,8 +181,7 @@ pub(super) fn settled<T: Real>(
             break;
         }
         if cells.jacobian < worst.jacobian {
-            let [i, j] = front.place(cells.cell);
-            at = [k + 1, i, j];
+            (layer, at) = (k + 1, front.cell_place(cells.cell).0);
         }
         worst = worst.worse(cells);
         growth = growth.max(grown);
@@ -201,6 +200,7 @@ pub(super) fn settled<T: Real>(
         steps,
         rung,
         jacobian: worst.jacobian,
+        layer,
         at,
         skewness: worst.skewness,
         first_cell: [low, high],

@@ -1,9 +1,10 @@
 //! Options of a march, and criteria of an early end.
 
-use moldloft_num::Real;
+use super::line::{Matrix, add, mirrored};
+use moldloft_num::{Real, Vec3};
 
 /// Condition at an edge of the surface, or an end of the curve, that is marched.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum MarchBoundary {
     /// The edge follows the equations, which are one-sided there.
     #[default]
@@ -11,12 +12,72 @@ pub enum MarchBoundary {
     /// The edge stays in its plane x = const (0), y = const (1) or z = const (2), a plane of
     /// symmetry to which the grid lines are perpendicular.
     Symmetry(usize),
+    /// The edge is free and leans outward: the surface is continued beyond it by cells that are longer than the
+    /// last one by this share, and steps are extrapolated by it (0 is [`MarchBoundary::Free`]).
+    Splay(f64),
     /// The edge keeps its x (0), y (1) or z (2) and is free otherwise.
     Constant(usize),
+    /// The edge moves along x (0), y (1) or z (2) and keeps the other two coordinates.
+    Along(usize),
     /// The edge is a point (a nose, a tail), and all its points move as one.
     Pole,
     /// The edge and the opposite one are the same line: the surface closes.
     Periodic,
+}
+
+impl MarchBoundary {
+    /// The coordinates that points of the edge keep.
+    pub(super) fn kept(self) -> [bool; 3] {
+        let mut kept = [false; 3];
+        match self {
+            Self::Symmetry(axis) | Self::Constant(axis) => kept[axis] = true,
+            Self::Along(axis) => kept = [0, 1, 2].map(|k| k != axis),
+            _ => {}
+        }
+        kept
+    }
+
+    /// The ghost beyond an edge, opposite to the neighbour inside.
+    pub(super) fn beyond<T: Real>(self, here: Vec3<T>, inner: Vec3<T>) -> Vec3<T> {
+        match self {
+            Self::Symmetry(plane) => reflected(inner, plane, here[plane]),
+            Self::Splay(share) => here * T::from(2.0 + share) - inner * T::from(1.0 + share),
+            _ => here * T::from(2.0) - inner,
+        }
+    }
+
+    /// The step of the ghost: that of the edge, its extrapolation, or the mirror image of that inside.
+    pub(super) fn beyond_step<T: Real>(self, here: Vec3<T>, inner: Vec3<T>) -> Vec3<T> {
+        match self {
+            Self::Symmetry(plane) => reflected(inner, plane, T::zero()),
+            Self::Splay(share) => here * T::from(1.0 + share) - inner * T::from(share),
+            _ => here,
+        }
+    }
+
+    /// Adds the term of the ghost's step, `outer`, to those of the edge and of the neighbour inside.
+    pub(super) fn close<T: Real>(
+        self,
+        middle: &mut Matrix<T>,
+        outer: &Matrix<T>,
+        inner: &mut Matrix<T>,
+    ) {
+        match self {
+            Self::Symmetry(plane) => add(inner, &mirrored(outer, plane)),
+            Self::Splay(share) => {
+                add(middle, &outer.map(|row| row.map(|x| x * (1.0 + share))));
+                add(inner, &outer.map(|row| row.map(|x| x * -share)));
+            }
+            _ => add(middle, outer),
+        }
+    }
+}
+
+/// A point reflected in the plane where a coordinate has a value.
+pub(super) fn reflected<T: Real>(point: Vec3<T>, coordinate: usize, value: T) -> Vec3<T> {
+    let mut image = point.to_array();
+    image[coordinate] = value * T::from(2.0) - image[coordinate];
+    image.into()
 }
 
 /// Criteria for an end before the last height. By default there is none: a march that cannot reach

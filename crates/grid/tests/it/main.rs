@@ -8,5 +8,6 @@ mod grids;
 mod marching;
 mod pole_cells;
 mod sections;
+mod surfaces;
 mod volumes;
 mod walls;
