@@ -155,7 +155,7 @@ def propeller(page: Any) -> None:
     seen(page, "1", *["ArrowLeft"] * 4)
     shown(page, "by-hand-blade")
     for k in range(1, 5):
-        add(page, picked(page, "RotatSurf", blade, shaft, angle=f"{72 * k}"))
+        add(page, picked(page, "RotatSurf", blade, shaft, angle=f"{0.4 * k:g} * PI"))
     seen(page, "1")
     shown(page, "by-hand-propeller")
 
