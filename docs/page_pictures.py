@@ -24,11 +24,13 @@ FLAGS = ["--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-
 
 
 @contextmanager
-def opened_page(text: str, size: tuple[int, int], before: str = "") -> Iterator[Any]:
+def opened_page(
+    text: str, size: tuple[int, int], before: str = "", name: str = "boat.sdl"
+) -> Iterator[Any]:
     """The page of a model of this text, alive; `before` is a script that runs first."""
     chromium = next(filter(None, map(shutil.which, ["chromium", "chromium-browser"])), None)
     with tempfile.TemporaryDirectory() as folder, sync_playwright() as play:
-        model = Path(folder) / "boat.sdl"
+        model = Path(folder) / name
         model.write_text(text)
         command = [sys.executable, "-m", "moldloft", "view", str(model), "--no-browser"]
         with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as server:

@@ -419,5 +419,5 @@ def test_a_propeller_is_made_from_the_start_page(bench: Callable[..., Bench]) ->
     trailing = m.make("CCurve", "P9", "P10", "P11", "P8")
     blade = m.make("RuledSurf", leading, trailing)
     for k in range(1, 5):
-        m.make("RotatSurf", blade, shaft, angle=f"{72 * k}")
+        m.make("RotatSurf", blade, shaft, angle=f"{0.4 * k:g} * PI")
     m.done(6)
