@@ -180,6 +180,8 @@ class _Package:
         try:
             with self._files.open(name) as file:
                 _parsed(path, file, element)
+        except FileError:
+            raise
         except (zipfile.BadZipFile, zlib.error, RuntimeError, NotImplementedError) as error:
             raise FileError(f"`{path}` in it cannot be unfolded: {error}") from None
         except (EOFError, OSError) as error:

@@ -125,7 +125,7 @@ def test_a_workflow_of_snakemake(tmp_path: Path, monkeypatch: pytest.MonkeyPatch
     written(tmp_path, 60)
     commands(tmp_path, monkeypatch)
     serial = study.sweep(study.read("box.toml"), "serial.sqlite").csv()
-    Path("Snakefile").write_text(recipe("python", "# Snakefile"))
+    Path("Snakefile").write_text(recipe("snakemake", "# Snakefile"))
     subprocess.run(["snakemake", "-c", "2", "table"], check=True)
     assert Path("yacht.csv").read_bytes() == serial
     assert len(list(Path("parts").glob("*.sqlite"))) == 3
