@@ -88,7 +88,7 @@ mod _core {
     #[pymodule_export]
     use crate::search::{intersect, intersect_plane, nearest};
     #[pymodule_export]
-    use crate::sketch::{PySketch, sketch_reference};
+    use crate::sketch::{PySketch, sketch_reference, sketch_stroke};
     #[pymodule_export]
     use crate::value::Shape;
 

@@ -15,8 +15,9 @@ use moldloft::num::Vec3;
 use moldloft::picture::{Camera, Options, StyledPolyline, render};
 use moldloft::sketch::command::words::{CommandToken, TextCommand, text_commands};
 use moldloft::sketch::{
-    CommandReply, CoordinateAxis, DimensionMark, DrawingHit, Files, ObjectChange, PointId,
-    ReplySubject, SketchSession, SketchSolid, Suggestion, scripts,
+    CommandReply, CoordinateAxis, DimensionMark, DrawingHit, Files, Free, ObjectChange, PenSample,
+    PointId, ReplySubject, SketchCommand, SketchSession, SketchSolid, Snap, StrokeFault,
+    StrokePiece, Suggestion, TypeProposal, fit_stroke, pen_positions, scripts,
 };
 use numpy::{PyArray1, PyArray2, PyArray3, PyArrayMethods};
 use pyo3::prelude::*;
@@ -108,6 +109,16 @@ type Mark = (
     Option<[[f64; 2]; 2]>,
     Vec<[[f64; 2]; 2]>,
 );
+
+/// A snap: position, kind, point, line with the part of its length, directions, points that these start from.
+type SnapRow = ([f64; 2], &'static str, Option<u32>, Option<(u32, f64)>, Vec<String>, Vec<u32>);
+
+/// A proposed type: line, type, probability, alternatives.
+type ProposalRow = (u32, &'static str, f64, Vec<(Option<&'static str>, f64)>);
+
+/// A piece of a stroke: kind, points, centre, radius, half-axes, residual, smoothness of its end.
+type PieceRow =
+    (&'static str, Vec<[f64; 2]>, Option<[f64; 2]>, Option<f64>, Option<[[f64; 2]; 2]>, f64, bool);
 
 fn suggested(s: Suggestion) -> Suggested {
     (s.axis.to_string(), s.p.0, s.q.0, s.value, s.open)
@@ -290,28 +301,46 @@ impl PySketch {
         self.lock(py).rollback();
     }
 
-    /// The point of the page to which a pointer snaps: u, v, a point, a line with the part of its length, the
-    /// axis of an extension through the point.
-    #[allow(clippy::type_complexity)]
-    fn snap(
+    /// Meanings of a position on the page, the likeliest first: position, kind, a point, a line with the part of its
+    /// length, directions, and the points that these start from.
+    fn snaps(
         &self,
         py: Python<'_>,
         name: &str,
         at: [f64; 2],
         reach: f64,
-    ) -> PyResult<Option<([f64; 2], Option<u32>, Option<(u32, f64)>, Option<String>)>> {
+        start: Option<[f64; 2]>,
+        awake: Vec<u32>,
+    ) -> PyResult<Vec<SnapRow>> {
         let session = self.lock(py);
         let object = session.object(name).ok_or_else(|| no_object(name))?;
-        Ok(object.drawing.snap(at, reach).map(|snap| {
-            let axis = snap.axis.map(|a| a.to_string());
-            match snap.hit {
-                Some(DrawingHit::Point(p)) => (snap.at, Some(p.0), None, axis),
-                Some(DrawingHit::Line { line, part }) => {
-                    (snap.at, None, Some((line.0, part)), axis)
-                }
-                None => (snap.at, None, None, axis),
-            }
-        }))
+        let awake: Vec<PointId> = awake.into_iter().map(PointId).collect();
+        let row = |snap: Snap| {
+            let (point, line) = match snap.hit {
+                Some(DrawingHit::Point(p)) => (Some(p.0), None),
+                Some(DrawingHit::Line { line, part }) => (None, Some((line.0, part))),
+                None => (None, None),
+            };
+            let directions = snap.directions.iter().map(ToString::to_string).collect();
+            let of = snap.of.into_iter().map(|p| p.0).collect();
+            (snap.at, snap.kind.word(), point, line, directions, of)
+        };
+        Ok(object.drawing.snaps(at, reach, start, &awake).into_iter().map(row).collect())
+    }
+
+    /// Types of lines by the judgement of the whole drawing: line, type, probability, and the
+    /// alternatives with their probabilities.
+    fn type_proposals(&self, py: Python<'_>, name: &str) -> PyResult<Vec<ProposalRow>> {
+        let session = self.lock(py);
+        let drawing = session.object(name).ok_or_else(|| no_object(name))?.drawing.clone();
+        drop(session);
+        let found = py.detach(move || drawing.type_proposals());
+        let row = |p: TypeProposal| {
+            let others = p.alternatives.iter();
+            let others = others.map(|(f, p)| (f.map(Free::spelling), *p)).collect();
+            (p.line.0, p.free.spelling(), p.probability, others)
+        };
+        Ok(found.into_iter().map(row).collect())
     }
 
     /// Dimensions that the picture suggests: axis, from, to, value, and whether the depth is a guess.
@@ -366,6 +395,11 @@ impl PySketch {
 
     fn journal_length(&self, py: Python<'_>) -> usize {
         self.lock(py).journal().len()
+    }
+
+    /// The commands of the open series of edits.
+    fn pending(&self, py: Python<'_>) -> Vec<String> {
+        self.lock(py).pending().to_vec()
     }
 
     fn complete(&self, py: Python<'_>, line: &str) -> Vec<String> {
@@ -574,6 +608,35 @@ impl PySketch {
         let png = png.map_err(plain_error)?;
         Ok(PyBytes::new(py, &png))
     }
+}
+
+/// The pieces of a stroke of a pen, whether it is closed, its noise, the tolerance of its ends, and the
+/// command that draws it. Samples are rows of u and v, of time, of pressure.
+#[pyfunction]
+#[allow(clippy::type_complexity)]
+pub fn sketch_stroke(
+    py: Python<'_>,
+    at: Vec<[f64; 2]>,
+    times: Option<Vec<f64>>,
+    pressures: Option<Vec<f64>>,
+) -> PyResult<(Vec<PieceRow>, bool, f64, f64, String)> {
+    let value = |all: &Option<Vec<f64>>, k: usize| all.as_ref().and_then(|a| a.get(k).copied());
+    let samples: Vec<PenSample> = (at.iter().enumerate())
+        .map(|(k, at)| PenSample {
+            at: *at,
+            time: value(&times, k),
+            pressure: value(&pressures, k),
+        })
+        .collect();
+    let found: Result<_, StrokeFault> =
+        py.detach(|| Ok((fit_stroke(&samples)?, pen_positions(&samples)?)));
+    let (fit, samples) = found.map_err(plain_error)?;
+    let row = |p: StrokePiece| {
+        (p.kind.word(), p.points, p.centre, p.radius, p.half_axes, p.residual, p.smooth)
+    };
+    let pieces = fit.pieces.into_iter().map(row).collect();
+    let command = SketchCommand::Stroke { samples }.to_string();
+    Ok((pieces, fit.closed, fit.noise, fit.tolerance, command))
 }
 
 /// The command reference as Markdown.

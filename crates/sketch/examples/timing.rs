@@ -108,7 +108,7 @@ fn canvas() {
     println!("hit test                               {t:8.4} ms");
     let t = best(300, || {
         at -= 1.7;
-        std::hint::black_box(drawing.snap([at, 0.3 * at], 2.0));
+        std::hint::black_box(drawing.snaps([at, 0.3 * at], 2.0, None, &[]));
     });
     println!("snap                                   {t:8.4} ms");
 }

@@ -87,12 +87,12 @@ pub use drawing::line_types::{DOUBTFUL, NAMING_TOLERANCE};
 pub use drawing::planes::{Planes, Reason, TypeFault, why};
 pub use drawing::projection::Projection;
 pub use drawing::proposals::TypeProposal;
+pub use drawing::snaps::{Snap, SnapDirection, SnapKind};
 pub use drawing::stroke::{
     PenSample, StrokeFault, StrokeFit, StrokeKind, StrokePiece, fit_stroke, pen_positions,
 };
 pub use drawing::{
     Align, Drawing, DrawingHit, DrawnLine, DrawnPoint, FaceId, LineId, LineTypeSource, PointId,
-    Snap,
 };
 pub use feature::{
     EdgeBlend, EdgeChoice, FaceChoice, Feature, FeatureKind, FeatureOperand, Hole, HoleHead,

@@ -7,10 +7,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from moldloft import _core
 from moldloft.arguments import explain
+from moldloft.errors import Error
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
+    from numpy.typing import ArrayLike, NDArray
 
 __all__ = [
     "DimensionMark",
@@ -25,7 +27,10 @@ __all__ = [
     "SketchLine",
     "SketchObject",
     "SketchPoint",
+    "SketchProposal",
     "SketchSnap",
+    "SketchStroke",
+    "SketchStrokePiece",
     "SketchSuggestion",
 ]
 
@@ -233,21 +238,181 @@ class SketchSnap:
     ----------
     at
         Position, ``(u, v)``.
+    kind
+        ``"point"``, ``"cross"`` (of two directions), ``"mid"`` (of a line), ``"line"``, ``"axis"``,
+        ``"extension"`` (of a line) or ``"parallel"`` (of a line, through the start).
     point
-        The point at the position, or the origin of the extension.
+        The point at the position.
     line
-        The line that is there.
+        The line at the position.
     part
         The part of the line's length, 0 to 1.
-    axis
-        The axis of the extension: ``"X"``, ``"Y"`` or ``"Z"``.
+    directions
+        The directions through the position: axes, or lines such as ``"line 4"``; two of a crossing.
+    of
+        The points that the directions start from.
     """
 
     at: tuple[float, float]
+    kind: str
     point: int | None = None
     line: int | None = None
     part: float | None = None
-    axis: str | None = None
+    directions: tuple[str, ...] = ()
+    of: tuple[int, ...] = ()
+
+    @staticmethod
+    def from_row(row: Any) -> SketchSnap:
+        """The snap for a row of the session.
+
+        Parameters
+        ----------
+        row
+            Position, kind, point, line with the part of its length, directions and their points.
+
+        Returns
+        -------
+        SketchSnap
+            The same as an object.
+        """
+        (u, v), kind, point, line, directions, of = row
+        on, part = (None, None) if line is None else line
+        return SketchSnap((u, v), kind, point, on, part, tuple(directions), tuple(of))
+
+
+@dataclass(frozen=True)
+class SketchProposal:
+    """The likeliest type of a line by the judgement of the whole drawing.
+
+    Attributes
+    ----------
+    line
+        Its label.
+    type
+        Coordinates that change along it: ``"X"``, ``"XY"``, ``"O"``, ...
+    probability
+        Of the type, 0 to 1.
+    alternatives
+        Other types with their probabilities, the likeliest first; None for an inclined line
+        without a type.
+    """
+
+    line: int
+    type: str
+    probability: float
+    alternatives: tuple[tuple[str | None, float], ...] = ()
+
+
+@dataclass(frozen=True)
+class SketchStrokePiece:
+    """A piece of a stroke of a pen.
+
+    Attributes
+    ----------
+    kind
+        ``"line"``, ``"arc"``, ``"circle"``, ``"elliptical arc"``, ``"ellipse"`` or ``"spline"``.
+    points
+        The ends of a line; start, middle and end of an arc; none of a circle or ellipse; the
+        3 n + 1 Bezier points of a spline of n cubics.
+    centre
+        Centre of an arc, circle or ellipse.
+    radius
+        Radius of an arc or circle.
+    half_axes
+        Half-axes of an ellipse as vectors, the longer one first.
+    residual
+        Root mean square distance of the samples.
+    smooth
+        True if the next piece continues it without a corner.
+    """
+
+    kind: str
+    points: tuple[tuple[float, float], ...]
+    centre: tuple[float, float] | None
+    radius: float | None
+    half_axes: tuple[tuple[float, float], tuple[float, float]] | None
+    residual: float
+    smooth: bool
+
+
+@dataclass(frozen=True)
+class SketchStroke:
+    """A stroke of a pen as lines, arcs, ellipses and splines, joined end to start.
+
+    Attributes
+    ----------
+    pieces
+        The pieces in the order of the stroke.
+    closed
+        True if the last piece ends at the start of the first one.
+    noise
+        Standard deviation of the samples across the stroke.
+    tolerance
+        Distance within which ends are one point.
+    command
+        The command that draws it.
+    """
+
+    pieces: tuple[SketchStrokePiece, ...]
+    closed: bool
+    noise: float
+    tolerance: float
+    command: str
+
+    @staticmethod
+    def of(samples: ArrayLike) -> SketchStroke:
+        """Fit pieces to the samples of one stroke, in time proportional to their number.
+
+        The stroke is divided into lines and arcs of least description length by dynamic
+        programming (Horng and Li, Pattern Recognition Letters 22, 2001; Schwarz, Annals of
+        Statistics 6, 1978); the noise of the hand is estimated with them.
+
+        Parameters
+        ----------
+        samples
+            Rows of position ``(n, 2)``, with time ``(n, 3)`` and pressure ``(n, 4)``. Samples are
+            put in the order of time; those of pressure 0 are not drawn.
+
+        Returns
+        -------
+        SketchStroke
+            Pieces, noise and tolerance in units of the page.
+
+        Raises
+        ------
+        Error
+            A sample is not finite, or all are at one position.
+
+        Examples
+        --------
+        >>> from moldloft.shapes.sketch_values import SketchStroke
+        >>> corner = [(5 * k, 0) for k in range(20)] + [(100, 5 * k) for k in range(20)]
+        >>> [piece.kind for piece in SketchStroke.of(corner).pieces]
+        ['line', 'line']
+        """
+        rows = np.asarray(samples, dtype=np.float64)
+        if rows.ndim != 2 or rows.shape[1] not in (2, 3, 4):
+            raise Error(f"samples: expected rows of 2 to 4 numbers, found shape {rows.shape}")
+        times, pressures = (rows[:, k].tolist() if rows.shape[1] > k else None for k in (2, 3))
+        found = _core.sketch_stroke(rows[:, :2].tolist(), times, pressures)
+        pieces, closed, noise, tolerance, command = found
+
+        def pair(at: Any) -> tuple[float, float]:
+            return (at[0], at[1])
+
+        def piece(row: Any) -> SketchStrokePiece:
+            kind, points, centre, radius, axes, residual, smooth = row
+            return SketchStrokePiece(
+                kind,
+                tuple(map(pair, points)),
+                None if centre is None else pair(centre),
+                radius,
+                None if axes is None else (pair(axes[0]), pair(axes[1])),
+                residual,
+                smooth,
+            )
+
+        return SketchStroke(tuple(map(piece, pieces)), closed, noise, tolerance, command)
 
 
 @dataclass(frozen=True)

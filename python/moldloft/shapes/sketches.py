@@ -26,7 +26,10 @@ from moldloft.shapes.sketch_values import (
     SketchLine,
     SketchObject,
     SketchPoint,
+    SketchProposal,
     SketchSnap,
+    SketchStroke,
+    SketchStrokePiece,
     SketchSuggestion,
 )
 from moldloft.storage import read_text, utf8_path
@@ -50,7 +53,10 @@ __all__ = [
     "SketchLine",
     "SketchObject",
     "SketchPoint",
+    "SketchProposal",
     "SketchSnap",
+    "SketchStroke",
+    "SketchStrokePiece",
     "SketchSuggestion",
 ]
 
@@ -363,15 +369,28 @@ class Sketch:
         >>> drag.changes[0].drawn
         (2,)
         >>> _ = s.run("UNDO")
-        >>> s.snap(9.2, 0.1, 1).at
+        >>> s.snaps(9.2, 0.1, 1)[0].at
         (9.0, 0.0)
         """
         return Drag(self)
 
-    def snap(
-        self, u: float, v: float, reach: float, *, name: str | None = None
-    ) -> SketchSnap | None:
-        """Snap of a pointer: the nearest point, line, or extension along an axis.
+    def snaps(
+        self,
+        u: float,
+        v: float,
+        reach: float,
+        *,
+        start: tuple[float, float] | None = None,
+        awake: Sequence[int] = (),
+        name: str | None = None,
+    ) -> list[SketchSnap]:
+        """Meanings of a pointer position, the likeliest first.
+
+        In this order: the nearest point; crossings of a direction through ``start`` with an axis
+        through a point, or of two through points of ``awake``; the middle of the nearest line; that
+        line; directions through the start and the points of ``awake``; axes through other points.
+        Directions are the axes, the lines that end at a point of ``awake``, as extensions of it,
+        and their parallels through the start.
 
         Parameters
         ----------
@@ -379,20 +398,59 @@ class Sketch:
             Position on the page.
         reach
             Maximum distance.
+        start
+            Start of a line under construction.
+        awake
+            Points whose directions are wanted, such as those under which the pointer rested.
         name
             The object; by default the active one.
 
         Returns
         -------
-        SketchSnap or None
-            The position, and the point, line or axis there; None if nothing is within reach.
+        list of SketchSnap
+            Empty if nothing is within reach.
         """
-        found = self._session.snap(self._name(name), [float(u), float(v)], float(reach))
-        if found is None:
-            return None
-        (x, y), point, line, axis = found
-        on, part = (None, None) if line is None else line
-        return SketchSnap((x, y), point, on, part, axis)
+        begin = None if start is None else [float(start[0]), float(start[1])]
+        rows = self._session.snaps(
+            self._name(name), [float(u), float(v)], float(reach), begin, [int(p) for p in awake]
+        )
+        return [SketchSnap.from_row(row) for row in rows]
+
+    def proposals(self, *, name: str | None = None) -> list[SketchProposal]:
+        """The likeliest types of the lines that the user has not typed.
+
+        ``TYPE AUTO`` writes those of a probability of at least ``SET CERTAINTY``.
+
+        Parameters
+        ----------
+        name
+            The object; by default the active one.
+
+        Returns
+        -------
+        list of SketchProposal
+            By number of the line.
+        """
+        rows = self._session.type_proposals(self._name(name))
+        return [SketchProposal(line, kind, p, tuple(others)) for line, kind, p, others in rows]
+
+    def stroke(self, samples: ArrayLike) -> tuple[SketchStroke, list[ObjectChange]]:
+        """Draw a stroke of a pen into the active object as lines, arcs, circles and ellipses.
+
+        Ends are those of the drawing's points within the tolerance of the stroke.
+
+        Parameters
+        ----------
+        samples
+            As for :meth:`SketchStroke.of`.
+
+        Returns
+        -------
+        tuple
+            The pieces, and the changes.
+        """
+        stroke = SketchStroke.of(samples)
+        return stroke, self.edit(stroke.command)
 
     def suggestions(self, *, name: str | None = None) -> list[SketchSuggestion | None]:
         """The missing dimensions suggested by the drawing, one for each undetermined part.

@@ -12,12 +12,13 @@ import json
 import math
 import re
 from collections.abc import Callable, Sequence
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
 from moldloft import _core
 from moldloft.errors import Error
-from moldloft.shapes.sketch_values import Reply
+from moldloft.shapes.sketch_values import Reply, SketchStroke
 from moldloft.workbench.outlines import outlines
 from moldloft.workbench.room import answer_frames
 from moldloft.workbench.snaps import Axes, snapped
@@ -372,18 +373,53 @@ class Board:
 
     def proposals(self) -> list[dict[str, Any]]:
         """The types suggested by all strokes together, where they differ from the present ones."""
-        found: list[dict[str, Any]] = []
+        if self._object is None:
+            return []
+        before = {ln["id"]: ln["type"] for ln in self._data().get("lines", [])}
+        return [
+            {"line": line, "type": kind, "share": share, "alternatives": [list(o) for o in others]}
+            for line, kind, share, others in self._session.type_proposals(self._object)
+            if kind != before.get(line)
+        ]
+
+    def stroke(self, request: dict[str, Any]) -> dict[str, Any]:
+        """A stroke of a pen as pieces, and the commands that draw them.
+
+        Parameters
+        ----------
+        request
+            ``samples``, rows of u and v, of time and of pressure; ``trial``, true to leave the text
+            as it is.
+
+        Returns
+        -------
+        dict
+            ``pieces`` with ``closed``, ``noise`` and ``tolerance`` of the stroke, the ``commands``,
+            the ``remarks`` on what the sketch cannot hold, and unless it is a trial the ``edits``
+            and the facts as after an edit.
+        """
+        stroke = SketchStroke.of(request["samples"])
+        replies: list[Reply] = []
+        commands: list[str] = []
 
         def look() -> None:
-            before = {ln["id"]: ln["type"] for ln in self._data().get("lines", [])}
-            self._session.run_line("TYPE AUTO")
-            for ln in self._data().get("lines", []):
-                if ln["type"] and ln["type"] != before.get(ln["id"]):
-                    found.append({"line": ln["id"], "type": ln["type"], "share": ln["certainty"]})
+            replies.extend(map(Reply.from_row, self._session.run_line(stroke.command)))
+            commands.extend(self._session.pending()[-1:])
 
-        if self._object is not None:
-            self._aside(look)
-        return found
+        if self._object is None:
+            raise RefusedError("there is no object to draw in: SKETCH starts one")
+        self._aside(look)
+        for reply in replies:
+            if reply.is_error:
+                raise RefusedError(f"{reply.text}; {reply.next}" if reply.next else reply.text)
+        out: dict[str, Any] = asdict(stroke)
+        del out["command"]
+        out["commands"] = "; ".join(commands)
+        out["remarks"] = [r.text for r in replies if r.severity == "warning"]
+        if not request.get("trial") and commands:
+            out["edits"] = self.edit([{"do": "run", "command": out["commands"]}])
+            out.update(self.facts())
+        return out
 
     def solid(self, trial: str | None = None) -> dict[str, Any]:
         """The body from drawing and dimensions; exact if no dimension is missing.
@@ -445,11 +481,10 @@ class Board:
         out: dict[str, Any] = {"at": list(at), "why": None}
         if name is None or not math.isfinite(sum(at)):
             return out
-        _, axes = self._axes_of(name)
         if not request.get("free"):
             out.update(
                 snapped(
-                    self._session, name, axes, at, float(request["reach"]),
+                    self._session, name, at, float(request["reach"]),
                     None if start is None else (float(start[0]), float(start[1])),
                     [int(p) for p in request.get("woken", [])],
                 )
@@ -494,6 +529,8 @@ class Board:
             return {"edits": edits, **self.facts()}
         if kind == "board_drag":
             return self.facts(request["move"])
+        if kind == "board_stroke":
+            return self.stroke(request)
         if kind in ("board_pointer", "board_place"):
             return self.pointer(request)
         if kind == "board_solid":

@@ -49,7 +49,7 @@ BOARD = Room(
     "board",
     "the drawing board",
     frozenset({"board_pointer", "board_drag", "board_solid", "board_check", "board_open"}),
-    frozenset({"board_edit", "board_place"}),
+    frozenset({"board_edit", "board_place", "board_stroke"}),
     frozenset({"board_solid", "board_check"}),
 )
 DESK = Room(

@@ -597,13 +597,12 @@ def test_edits_are_data():
     with pytest.raises(RuntimeError), s.drag():
         drag.move(3, 0, 0)
         raise RuntimeError
-    snapped = s.snap(140.5, 33, reach=2)
-    assert snapped is not None and snapped.point == 3 and snapped.at == (140.0, 33.0)
-    on_line = s.snap(45, 0.4, reach=1)
-    assert (
-        on_line is not None and on_line.line == 1 and on_line.part == pytest.approx(0.5, abs=0.01)
-    )
-    assert s.snap(1e6, 1e5, reach=1) is None
+    snapped = s.snaps(140.5, 33, reach=2)[0]
+    assert (snapped.kind, snapped.point, snapped.at) == ("point", 3, (140.0, 33.0))
+    middle, on_line = s.snaps(45, 0.4, reach=1)[:2]
+    assert (middle.kind, middle.line, middle.part) == ("mid", 1, 0.5)
+    assert on_line.line == 1 and on_line.part == pytest.approx(0.5, abs=0.01)
+    assert s.snaps(1e6, 1e5, reach=1) == []
     with pytest.raises(SketchError, match="expected indices"):
         s.draw([[0, 0]], [[0, 1]])
     with pytest.raises(SketchError):

@@ -8,14 +8,13 @@ from typing import Any
 import pytest
 
 from moldloft import _core
-from moldloft.workbench.snaps import Axes, snapped
+from moldloft.workbench.snaps import snapped
 
 #: A line along x, and an oblique one from its end.
 SKETCH = (
     "SKETCH PART; AXES 345 40 90; POINT 1 AT 0 0; POINT 2 AT 100 0; POINT 3 AT 130 70; LINE 1 2 3"
 )
 OBLIQUE = math.atan2(70, 30)
-AXES = Axes("XYZ", [345, 40, 90], [1, 1, 1])
 
 
 def snap(
@@ -23,7 +22,7 @@ def snap(
 ) -> dict[str, Any]:
     session = _core.SketchSession(None)
     session.run_line(SKETCH)
-    return snapped(session, "PART", AXES, at, 5.0, start, list(woken))
+    return snapped(session, "PART", at, 5.0, start, list(woken))
 
 
 def beyond(origin: tuple[float, float], way: float, far: float, off: float) -> tuple[float, float]:
@@ -64,5 +63,5 @@ def test_axes_come_before_lines_along_them() -> None:
     session.run_line(
         f"SKETCH PART; AXES 345 40 90; POINT 1 AT 0 0; POINT 2 AT {along[0]} {along[1]}; LINE 1 1 2"
     )
-    found = snapped(session, "PART", AXES, beyond((0, 0), math.radians(40), 150, 2), 5.0, None, [2])
+    found = snapped(session, "PART", beyond((0, 0), math.radians(40), 150, 2), 5.0, None, [2])
     assert (found["why"], found["axes"]) == ("axis", ["Y"])

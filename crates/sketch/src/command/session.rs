@@ -572,6 +572,12 @@ impl SketchSession {
         &self.journal[..self.settled()]
     }
 
+    /// The commands of the open series of edits, which [`commit`](SketchSession::commit) joins to one line of the
+    /// journal.
+    pub fn pending(&self) -> &[String] {
+        &self.journal[self.settled()..]
+    }
+
     /// True if a question is open.
     pub fn asks(&self) -> bool {
         self.question.is_some()

@@ -10,6 +10,7 @@ mod picture_axes;
 pub(crate) mod planes;
 pub(crate) mod projection;
 pub(crate) mod proposals;
+pub(crate) mod snaps;
 pub(crate) mod stroke;
 
 use axis::{CoordinateAxis, Free, Letters};
@@ -120,17 +121,6 @@ pub enum DrawingHit {
         /// 0 at its start, 1 at its end.
         part: f64,
     },
-}
-
-/// A position on the page to which a pointer snaps.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Snap {
-    /// The point.
-    pub at: [f64; 2],
-    /// The element at that position, or the point whose extension line it is on.
-    pub hit: Option<DrawingHit>,
-    /// The axis of the extension.
-    pub axis: Option<CoordinateAxis>,
 }
 
 /// The flat picture of one object.
@@ -259,9 +249,13 @@ impl Drawing {
                 best = Some((d, DrawingHit::Point(id)));
             }
         }
-        if let Some((_, hit)) = best {
-            return Some(hit);
-        }
+        best.map(|b| b.1).or_else(|| self.hit_line([u, v], reach))
+    }
+
+    /// The nearest line within `reach` of a position on the page, and the fraction of its length.
+    fn hit_line(&self, [u, v]: [f64; 2], reach: f64) -> Option<DrawingHit> {
+        let square = reach * reach;
+        let mut best: Option<(f64, DrawingHit)> = None;
         for (&id, line) in &self.lines {
             let (Some(a), Some(b)) = (self.points.get(&line.p), self.points.get(&line.q)) else {
                 continue;
@@ -276,47 +270,6 @@ impl Drawing {
             let d = x * x + y * y;
             if d <= square && best.as_ref().is_none_or(|b| d < b.0) {
                 best = Some((d, DrawingHit::Line { line: id, part }));
-            }
-        }
-        best.map(|b| b.1)
-    }
-
-    /// Snap of a position on the page within `reach`: a point, a point on a line, or the extension
-    /// of an axis through a point.
-    pub fn snap(&self, at: [f64; 2], reach: f64) -> Option<Snap> {
-        match self.hit(at, reach) {
-            Some(DrawingHit::Point(point)) => {
-                let p = self.points[&point];
-                return Some(Snap {
-                    at: [p.u, p.v],
-                    hit: Some(DrawingHit::Point(point)),
-                    axis: None,
-                });
-            }
-            Some(DrawingHit::Line { line, part }) => {
-                let l = self.lines[&line];
-                let (a, b) = (self.points[&l.p], self.points[&l.q]);
-                let at = [a.u + (b.u - a.u) * part, a.v + (b.v - a.v) * part];
-                return Some(Snap { at, hit: Some(DrawingHit::Line { line, part }), axis: None });
-            }
-            None => {}
-        }
-        let mut best: Option<(f64, Snap)> = None;
-        for (&id, p) in &self.points {
-            for axis in CoordinateAxis::ALL.into_iter().filter(|a| self.section != Some(*a)) {
-                let [c, s] = self.projection.unit(axis);
-                let length = c * c + s * s;
-                if length == 0.0 {
-                    continue;
-                }
-                let along = ((at[0] - p.u) * c + (at[1] - p.v) * s) / length;
-                let foot = [p.u + c * along, p.v + s * along];
-                let d = (foot[0] - at[0]).powi(2) + (foot[1] - at[1]).powi(2);
-                if d <= reach * reach && best.as_ref().is_none_or(|b| d < b.0) {
-                    let snap =
-                        Snap { at: foot, hit: Some(DrawingHit::Point(id)), axis: Some(axis) };
-                    best = Some((d, snap));
-                }
             }
         }
         best.map(|b| b.1)

@@ -286,7 +286,12 @@ fn any_typed_commands() {
                         s.dimension_marks(&name, None);
                         s.dimension_marks(&name, Some("iso"));
                         let object = s.object(&name).unwrap();
-                        object.drawing.snap([number(&mut random), 0.0], number(&mut random));
+                        object.drawing.snaps(
+                            [number(&mut random), 0.0],
+                            number(&mut random),
+                            None,
+                            &[],
+                        );
                     }
                     s.report("CHECK");
                 }
