@@ -3,7 +3,7 @@
 use crate::grids::{EDGES, extended, fault, unknown};
 use crate::value::{GridArg, Points, block, distinct_neighbours, gathered, surface};
 use moldloft_grid::{
-    GridError, Hyperbolic, JoinFault, MarchBoundary, MarchReport, OpenEdges, Stop, Support,
+    GridError, Hyperbolic, JoinFault, MarchBoundary, MarchReport, OpenFrontEdges, Stop, Support,
     SurfaceGrid, hyperbolic_curve_until, hyperbolic_surfaces_until, hyperbolic_until,
 };
 use moldloft_num::{Order, Real, Vec3};
@@ -280,8 +280,8 @@ fn sides(text: &str, is_curve: bool, field: FieldId) -> Result<[MarchBoundary; 4
 }
 
 /// Conditions of a list of surfaces: "symmetry y" of all open edges, "2 j1 constant x" of one.
-fn open_edges(text: &str, surfaces: usize, field: FieldId) -> Result<OpenEdges, CallError> {
-    let mut edges = OpenEdges::all(surfaces, MarchBoundary::Free);
+fn open_edges(text: &str, surfaces: usize, field: FieldId) -> Result<OpenFrontEdges, CallError> {
+    let mut edges = OpenFrontEdges::all(surfaces, MarchBoundary::Free);
     for part in text.split(',').map(str::trim).filter(|part| !part.is_empty()) {
         let words: Vec<&str> = part.split_whitespace().collect();
         let bad = || {

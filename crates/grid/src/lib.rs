@@ -40,7 +40,7 @@ pub use hex_mesh::{
 };
 pub use marching::{
     FailureCause, Hyperbolic, JoinFault, MarchBoundary, MarchFailure, MarchPlace, MarchReport,
-    Marched, MarchedBlocks, OpenEdges, Stop, StopReason, Support, hyperbolic, hyperbolic_curve,
+    Marched, MarchedBlocks, OpenFrontEdges, Stop, StopReason, Support, hyperbolic, hyperbolic_curve,
     hyperbolic_curve_until, hyperbolic_surfaces, hyperbolic_surfaces_until, hyperbolic_until,
 };
 pub use pole_cells::PoleCell;

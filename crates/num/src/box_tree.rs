@@ -10,10 +10,10 @@ const LEAF_BOXES: usize = 8;
 pub struct BoxTree {
     order: Vec<usize>,
     bounds: Vec<Box3>,
-    nodes: Vec<Node>,
+    nodes: Vec<TreeBox>,
 }
 
-struct Node {
+struct TreeBox {
     bounds: Box3,
     range: Range<usize>,
     /// The two nodes that it consists of; a leaf has none.
@@ -41,7 +41,7 @@ impl BoxTree {
             let centre = |k: usize| self.bounds[k].centre().to_array()[axis];
             inside.sort_by(|&a, &b| centre(a).total_cmp(&centre(b)));
         }
-        self.nodes.push(Node { bounds, range: range.clone(), halves: None });
+        self.nodes.push(TreeBox { bounds, range: range.clone(), halves: None });
         if halved {
             let halves = [self.grow(range.start..middle), self.grow(middle..range.end)];
             self.nodes[number].halves = Some(halves);

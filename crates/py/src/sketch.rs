@@ -16,8 +16,8 @@ use moldloft::picture::{Camera, Options, StyledPolyline, render};
 use moldloft::sketch::command::words::{CommandToken, TextCommand, text_commands};
 use moldloft::sketch::{
     CommandReply, CoordinateAxis, DimensionMark, DrawingHit, Files, Free, ObjectChange, PenSample,
-    PointId, ReplySubject, SketchCommand, SketchSession, SketchSolid, Snap, StrokePiece,
-    Suggestion, TypeProposal, fit_stroke, pen_positions, scripts,
+    PointId, ReplySubject, SketchCommand, SketchSession, SketchSolid, Snap, StrokeFault,
+    StrokePiece, Suggestion, TypeProposal, fit_stroke, pen_positions, scripts,
 };
 use numpy::{PyArray1, PyArray2, PyArray3, PyArrayMethods};
 use pyo3::prelude::*;
@@ -628,9 +628,9 @@ pub fn sketch_stroke(
             pressure: value(&pressures, k),
         })
         .collect();
-    let found = py.detach(|| Ok((fit_stroke(&samples)?, pen_positions(&samples)?)));
-    let (fit, samples) =
-        found.map_err(|fault: moldloft::sketch::StrokeFault| plain_error(fault))?;
+    let found: Result<_, StrokeFault> =
+        py.detach(|| Ok((fit_stroke(&samples)?, pen_positions(&samples)?)));
+    let (fit, samples) = found.map_err(plain_error)?;
     let row = |p: StrokePiece| {
         (p.kind.word(), p.points, p.centre, p.radius, p.half_axes, p.residual, p.smooth)
     };

@@ -14,7 +14,7 @@ use std::collections::{BTreeMap, HashMap, VecDeque};
 
 /// Conditions at the edges of surfaces that are not joined.
 #[derive(Clone, Debug, PartialEq)]
-pub struct OpenEdges {
+pub struct OpenFrontEdges {
     /// Stated conditions, for each surface at `s[1,]`, `s[m,]`, `s[,1]` and `s[,n]`.
     pub stated: Vec<[Option<MarchBoundary>; 4]>,
     /// The condition of all other open edges.
@@ -23,7 +23,7 @@ pub struct OpenEdges {
     pub tolerance: f64,
 }
 
-impl OpenEdges {
+impl OpenFrontEdges {
     /// The same condition at all open edges of so many surfaces, and a tolerance of 1e-8.
     pub fn all(surfaces: usize, others: MarchBoundary) -> Self {
         Self { stated: vec![[None; 4]; surfaces], others, tolerance: 1e-8 }
@@ -44,7 +44,7 @@ impl OpenEdges {
 /// [`GridError::Join`] where the surfaces are no front; those of [`super::hyperbolic`].
 pub fn hyperbolic_surfaces<T: Real>(
     surfaces: &[SurfaceGrid<T>],
-    edges: &OpenEdges,
+    edges: &OpenFrontEdges,
     options: &Hyperbolic<T>,
 ) -> Result<MarchedBlocks<T>, GridError> {
     hyperbolic_surfaces_until(surfaces, edges, options, &Budget::default())
@@ -56,7 +56,7 @@ pub fn hyperbolic_surfaces<T: Real>(
 /// Also [`GridError::Spent`].
 pub fn hyperbolic_surfaces_until<T: Real>(
     surfaces: &[SurfaceGrid<T>],
-    edges: &OpenEdges,
+    edges: &OpenFrontEdges,
     options: &Hyperbolic<T>,
     budget: &Budget,
 ) -> Result<MarchedBlocks<T>, GridError> {
@@ -87,7 +87,7 @@ pub fn hyperbolic_surfaces_until<T: Real>(
 
 fn joined<T: Real>(
     surfaces: &[SurfaceGrid<T>],
-    edges: &OpenEdges,
+    edges: &OpenFrontEdges,
 ) -> Result<(SurfaceFront<T>, Vec<PatchNodes>), JoinFault> {
     let join = Joints::new(surfaces, edges.tolerance);
     let wall = join.wall(surfaces);
@@ -122,7 +122,7 @@ struct Joints {
 }
 
 /// The points of the nodes, and the first point of the surfaces at each.
-struct Wall<T> {
+struct StartLayer<T> {
     points: Vec<Vec3<T>>,
     places: Vec<MarchPlace>,
 }
@@ -181,10 +181,10 @@ impl Joints {
         Self { patches, count, distance }
     }
 
-    fn wall<T: Real>(&self, surfaces: &[SurfaceGrid<T>]) -> Wall<T> {
+    fn wall<T: Real>(&self, surfaces: &[SurfaceGrid<T>]) -> StartLayer<T> {
         let none = MarchPlace { surface: None, at: [0, 0] };
         let mut wall =
-            Wall { points: vec![Vec3::zero(); self.count], places: vec![none; self.count] };
+            StartLayer { points: vec![Vec3::zero(); self.count], places: vec![none; self.count] };
         for (k, (patch, surface)) in self.patches.iter().zip(surfaces).enumerate() {
             for (point, &node) in patch.nodes.iter().enumerate() {
                 if wall.places[node].surface.is_none() {
@@ -303,7 +303,7 @@ type Conditions = BTreeMap<[usize; 2], MarchBoundary>;
 fn conditions(
     patches: &[PatchNodes],
     pairs: &Pairs,
-    edges: &OpenEdges,
+    edges: &OpenFrontEdges,
     is_hub: &[bool],
 ) -> Result<Conditions, JoinFault> {
     let mut conditions = Conditions::new();
@@ -339,7 +339,7 @@ fn conditions(
 /// Refuses planes of symmetry in which an edge is not.
 fn check_planes<T: Real>(
     conditions: &Conditions,
-    wall: &Wall<T>,
+    wall: &StartLayer<T>,
     distance: f64,
 ) -> Result<(), JoinFault> {
     let mut worst: Option<(MarchPlace, usize, f64)> = None;
@@ -360,7 +360,7 @@ fn check_hanging<T: Real>(
     surfaces: &[SurfaceGrid<T>],
     patches: &[PatchNodes],
     conditions: &Conditions,
-    wall: &Wall<T>,
+    wall: &StartLayer<T>,
     distance: f64,
 ) -> Result<(), JoinFault> {
     let mut open: Vec<[usize; 2]> = conditions.keys().copied().collect();

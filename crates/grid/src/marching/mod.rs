@@ -24,7 +24,7 @@ mod topology;
 
 pub use curve::{Support, hyperbolic_curve, hyperbolic_curve_until};
 pub use fault::JoinFault;
-pub use joined::{OpenEdges, hyperbolic_surfaces, hyperbolic_surfaces_until};
+pub use joined::{OpenFrontEdges, hyperbolic_surfaces, hyperbolic_surfaces_until};
 pub use outcome::{
     FailureCause, MarchFailure, MarchPlace, MarchReport, Marched, MarchedBlocks, StopReason,
 };

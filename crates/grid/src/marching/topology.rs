@@ -111,13 +111,13 @@ pub(super) enum FanFault {
 }
 
 /// The cells around a node in counterclockwise order.
-pub(super) struct Fan {
+pub(super) struct CellFan {
     /// The neighbours; of an open fan one more than cells.
     spokes: Vec<usize>,
     closed: bool,
 }
 
-impl Fan {
+impl CellFan {
     pub fn cells(&self) -> usize {
         self.spokes.len() - usize::from(!self.closed)
     }
@@ -271,7 +271,7 @@ pub(super) fn fans(
     patches: &[PatchNodes],
     count: usize,
     is_hub: &[bool],
-) -> Result<Vec<Option<Fan>>, FanFault> {
+) -> Result<Vec<Option<CellFan>>, FanFault> {
     let mut corners: Vec<Vec<[usize; 2]>> = vec![Vec::new(); count];
     for (cell, _) in patches.iter().flat_map(PatchNodes::cells) {
         let polygon = polygon(cell);
@@ -284,7 +284,7 @@ pub(super) fn fans(
     let each = corners.into_iter().enumerate();
     each.map(|(node, corners)| match is_hub[node] {
         true => Ok(None),
-        false => Fan::of(node, corners).map(Some),
+        false => CellFan::of(node, corners).map(Some),
     })
     .collect()
 }
@@ -294,7 +294,7 @@ impl FrontTopology {
     /// collapsed edges, whose nodes are hubs where several points are one node.
     pub fn new(
         patches: &[PatchNodes],
-        fans: &[Option<Fan>],
+        fans: &[Option<CellFan>],
         poles: Vec<Pole>,
         condition: &impl Fn([usize; 2]) -> MarchBoundary,
     ) -> Result<Self, FanFault> {
@@ -399,12 +399,12 @@ fn edges(patches: &[PatchNodes], is_pole: &[bool]) -> (Vec<[usize; 2]>, Vec<[usi
 }
 
 /// The open edges, side by side of the patches.
-fn borders(patches: &[PatchNodes], fans: &[Option<Fan>]) -> Vec<[usize; 2]> {
+fn borders(patches: &[PatchNodes], fans: &[Option<CellFan>]) -> Vec<[usize; 2]> {
     let mut found = Vec::new();
     let is_open = |[a, b]: [usize; 2]| {
         a != b
             && [(a, b), (b, a)].iter().any(|(node, other)| {
-                let open = fans[*node].as_ref().and_then(Fan::open);
+                let open = fans[*node].as_ref().and_then(CellFan::open);
                 open.is_some_and(|ends| ends.contains(other))
             })
     };

@@ -7,9 +7,9 @@
 
 use crate::model_file::header;
 use crate::run::interpreter::Interpreter;
+pub use crate::run::whole_groups::WHOLE_GROUPS;
 use crate::source::fault_location::unplaced;
 use crate::source::module::Module;
-pub use crate::run::whole_groups::WHOLE_GROUPS;
 pub use crate::value::member::not_finite;
 use moldloft_diag::{Diagnostic, Span};
 use moldloft_hydro::{Body, Hydrostatics, Symmetry, USUAL_ACCURACY, hydrostatics};

@@ -94,7 +94,7 @@ impl DrawnStroke {
     /// The parts of a stroke for a drawing, which has ends of its own.
     fn of(fit: &StrokeFit, drawing: &Drawing) -> Result<DrawnStroke, CommandError> {
         let mut out = DrawnStroke::default();
-        let grid = Grid::of(fit, drawing);
+        let grid = RoundedPlaces::of(fit, drawing);
         let pieces = &fit.pieces;
         let n = pieces.len();
         if let [one] = &pieces[..]
@@ -173,7 +173,7 @@ impl DrawnStroke {
     }
 
     /// Parts of at most a quarter circle, each in a corner of two lines.
-    fn arc(&mut self, piece: &StrokePiece, [start, end]: [Place; 2], grid: &Grid) {
+    fn arc(&mut self, piece: &StrokePiece, [start, end]: [Place; 2], grid: &RoundedPlaces) {
         let (Some(centre), Some(radius)) = (piece.centre, piece.radius) else { return };
         let angle = |p: Place| libm::atan2(p[1] - centre[1], p[0] - centre[0]);
         let [a, m, b] = [piece.points[0], piece.points[1], piece.points[2]].map(angle);
@@ -199,7 +199,7 @@ impl DrawnStroke {
     }
 
     /// A whole circle or ellipse in the parallelogram around it.
-    fn round(&mut self, piece: &StrokePiece, centre: Place, grid: &Grid) {
+    fn round(&mut self, piece: &StrokePiece, centre: Place, grid: &RoundedPlaces) {
         let (kind, [a, b], centre) = match (piece.radius, piece.half_axes) {
             (Some(r), _) => {
                 let r = grid.rounded_length(r);
@@ -230,7 +230,13 @@ impl DrawnStroke {
     }
 
     /// A spline or elliptical arc as lines within the noise of the pen.
-    fn chords(&mut self, piece: &StrokePiece, [start, end]: [Place; 2], noise: f64, grid: &Grid) {
+    fn chords(
+        &mut self,
+        piece: &StrokePiece,
+        [start, end]: [Place; 2],
+        noise: f64,
+        grid: &RoundedPlaces,
+    ) {
         let dense = dense(piece);
         let mut n = 2;
         let pick = |n: usize| -> Vec<Place> {
@@ -277,14 +283,14 @@ fn article(kind: StrokeKind) -> &'static str {
 }
 
 /// Positions of a drawing: those of its points, and rounded ones.
-struct Grid<'a> {
+struct RoundedPlaces<'a> {
     drawing: &'a Drawing,
     reach: f64,
     step: f64,
 }
 
-impl Grid<'_> {
-    fn of<'a>(fit: &StrokeFit, drawing: &'a Drawing) -> Grid<'a> {
+impl RoundedPlaces<'_> {
+    fn of<'a>(fit: &StrokeFit, drawing: &'a Drawing) -> RoundedPlaces<'a> {
         let all = fit.pieces.iter().flat_map(|p| {
             let r = p.radius.or(p.half_axes.map(|h| libm::hypot(h[0][0], h[0][1]))).unwrap_or(0.0);
             let round = p.centre.filter(|_| p.points.is_empty());
@@ -296,7 +302,11 @@ impl Grid<'_> {
         });
         let size = libm::hypot(high[0] - low[0], high[1] - low[1]);
         let step = DIGITS * libm::exp10(libm::log10(size).floor());
-        Grid { drawing, reach: fit.tolerance, step: if step.is_finite() { step } else { 0.0 } }
+        RoundedPlaces {
+            drawing,
+            reach: fit.tolerance,
+            step: if step.is_finite() { step } else { 0.0 },
+        }
     }
 
     /// The nearest point of the drawing within reach, or the rounded position.

@@ -80,7 +80,7 @@ pub struct Snap {
 
 /// A direction through a point, or through the start, near the pointer.
 #[derive(Clone, Copy)]
-struct Ray {
+struct SnapRay {
     off: f64,
     direction: SnapDirection,
     point: Option<PointId>,
@@ -117,9 +117,9 @@ impl Drawing {
             .collect();
         let ray = |point, through: [f64; 2], (direction, along): (_, [f64; 2]), kind| {
             let off = cross(to(through, at), along).abs();
-            Ray { off, direction, point, through, along, kind }
+            SnapRay { off, direction, point, through, along, kind }
         };
-        let mut all: Vec<Ray> = Vec::new();
+        let mut all: Vec<SnapRay> = Vec::new();
         for (&id, p) in &self.points {
             all.extend(axes.iter().map(|a| ray(Some(id), [p.u, p.v], *a, SnapKind::Axis)));
         }
@@ -175,9 +175,9 @@ impl Drawing {
                 out.push(snap(part, SnapKind::Line));
             }
         }
-        let mut near: Vec<Ray> = strong.iter().chain(&lively).copied().collect();
+        let mut near: Vec<SnapRay> = strong.iter().chain(&lively).copied().collect();
         near.sort_by(|a, b| a.off.total_cmp(&b.off));
-        let asleep = |r: &&Ray| r.point.is_some_and(|p| !awake.contains(&p));
+        let asleep = |r: &&SnapRay| r.point.is_some_and(|p| !awake.contains(&p));
         near.extend(all.iter().filter(asleep));
         for r in near {
             let s = dot(to(r.through, at), r.along);
@@ -195,7 +195,7 @@ impl Drawing {
     }
 }
 
-fn crossing(one: &Ray, two: &Ray) -> Option<[f64; 2]> {
+fn crossing(one: &SnapRay, two: &SnapRay) -> Option<[f64; 2]> {
     let sine = cross(one.along, two.along);
     let t = cross(to(one.through, two.through), two.along) / sine;
     (sine.abs() >= PARALLEL)

@@ -279,6 +279,8 @@ const CASES: &[(&str, &str)] = &[
     ("SKETCH A", "COPY A TO \"aaaaaaaaaabbbbbbbbbbccccccccccddd\""),
     ("SKETCH A", "COPY A TO A"),
     ("SKETCH A", "POINT 1 2e9 0"),
+    ("SKETCH A", "SET CERTAINTY 2"),
+    ("SKETCH A", "STROKES SAMPLES 100 0 99 13 97 26 92 38 87 50 79 61 71 71 61 79 50 87 38 92 26 97 13 99 0 100 -13 99 -26 97 -38 92 -50 87 -61 79 -71 71 -79 61 -87 50 -92 38 -97 26 -99 13 -100 0"),
     ("SKETCH A; POINT 1 0 0", "LINE 1 2"),
     ("BENT", "LINE 1 2"),
     ("BENT", "SPLIT 1 2"),

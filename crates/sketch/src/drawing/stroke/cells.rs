@@ -1,6 +1,6 @@
-//! Cells of a stroke: samples gathered over equal lengths, and the noise of the stroke.
+//! StrokeCells of a stroke: samples gathered over equal lengths, and the noise of the stroke.
 
-use super::division::Moments;
+use super::division::StrokeMoments;
 use super::{cross, distance, dot, to};
 use std::ops::Range;
 
@@ -24,28 +24,29 @@ const MOST_CUT: f64 = 0.12;
 const MOST_RETRACED: f64 = 0.3;
 
 /// Samples gathered over equal lengths of a stroke.
-pub(super) struct Cells {
+pub(super) struct StrokeCells {
     /// Mean position of each cell.
     pub at: Vec<[f64; 2]>,
     /// Mean moments of each cell.
-    pub moments: Vec<Moments>,
+    pub moments: Vec<StrokeMoments>,
     /// Positions of the samples of each cell.
     pub samples: Vec<Vec<[f64; 2]>>,
     /// Standard deviation across the stroke.
     pub noise: f64,
 }
 
-impl Cells {
+impl StrokeCells {
     /// Gathers points; `jitter` is the standard deviation of a single one.
-    pub fn of(points: &[[f64; 2]], jitter: f64) -> Cells {
+    pub fn of(points: &[[f64; 2]], jitter: f64) -> StrokeCells {
         let step = (CELL_NOISE * jitter).max(CELL);
         let length = step * gathered(points, step).len() as f64;
         let samples = gathered(points, step.max(length / MOST_CELLS));
         let mut cells =
-            Cells { at: vec![], moments: vec![], samples, noise: STEADY.max(0.5 * jitter) };
+            StrokeCells { at: vec![], moments: vec![], samples, noise: STEADY.max(0.5 * jitter) };
         for own in &cells.samples {
-            let sum =
-                own.iter().fold(Moments::default(), |m, p| m.with(*p, 1.0 / own.len() as f64));
+            let sum = own
+                .iter()
+                .fold(StrokeMoments::default(), |m, p| m.with(*p, 1.0 / own.len() as f64));
             cells.at.push([sum.x, sum.y]);
             cells.moments.push(sum);
         }
@@ -54,8 +55,8 @@ impl Cells {
     }
 
     /// The cells of a range.
-    pub fn part(self, range: Range<usize>) -> Cells {
-        Cells {
+    pub fn part(self, range: Range<usize>) -> StrokeCells {
+        StrokeCells {
             at: self.at[range.clone()].to_vec(),
             moments: self.moments[range.clone()].to_vec(),
             samples: self.samples[range].to_vec(),
@@ -64,7 +65,7 @@ impl Cells {
     }
 
     /// The cells from one of them on, round a closed stroke.
-    pub fn rotated(mut self, first: usize) -> Cells {
+    pub fn rotated(mut self, first: usize) -> StrokeCells {
         self.at.rotate_left(first);
         self.moments.rotate_left(first);
         self.samples.rotate_left(first);
@@ -130,7 +131,7 @@ pub(super) fn noise_of_samples(points: &[[f64; 2]]) -> f64 {
 
 /// The part of a stroke that is closed, without ends that overshoot or retrace it; `None` for an
 /// open stroke.
-pub(super) fn closed_part(cells: &Cells, tolerance: f64) -> Option<Range<usize>> {
+pub(super) fn closed_part(cells: &StrokeCells, tolerance: f64) -> Option<Range<usize>> {
     let n = cells.len();
     let mut along = vec![0.0; n];
     for k in 1..n {

@@ -1,6 +1,6 @@
-//! Division of a stroke into lines and arcs of least description length.
+//! StrokeDivision of a stroke into lines and arcs of least description length.
 
-use super::cells::Cells;
+use super::cells::StrokeCells;
 use super::{cross, distance, dot, to, turn};
 use std::ops::Range;
 
@@ -25,7 +25,7 @@ const STRAIGHT: f64 = 0.8;
 
 /// Sums of powers of the coordinates.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Moments {
+pub(super) struct StrokeMoments {
     pub n: f64,
     pub x: f64,
     pub y: f64,
@@ -37,11 +37,11 @@ pub(super) struct Moments {
     zz: f64,
 }
 
-impl Moments {
+impl StrokeMoments {
     /// With a point of a weight.
-    pub fn with(&self, [x, y]: [f64; 2], w: f64) -> Moments {
+    pub fn with(&self, [x, y]: [f64; 2], w: f64) -> StrokeMoments {
         let z = x * x + y * y;
-        self.plus(&Moments {
+        self.plus(&StrokeMoments {
             n: w,
             x: w * x,
             y: w * y,
@@ -55,12 +55,12 @@ impl Moments {
     }
 
     /// The sum.
-    pub fn plus(&self, o: &Moments) -> Moments {
+    pub fn plus(&self, o: &StrokeMoments) -> StrokeMoments {
         self.combined(o, 1.0)
     }
 
-    fn combined(&self, o: &Moments, s: f64) -> Moments {
-        Moments {
+    fn combined(&self, o: &StrokeMoments, s: f64) -> StrokeMoments {
+        StrokeMoments {
             n: self.n + s * o.n,
             x: self.x + s * o.x,
             y: self.y + s * o.y,
@@ -98,7 +98,7 @@ impl Moments {
         let n = self.n;
         let (x, y) = (self.x / n, self.y / n);
         let [mxx, mxy, myy] = self.covariance();
-        // Moments about the mean; z is the squared distance from it.
+        // StrokeMoments about the mean; z is the squared distance from it.
         let z = self.xx / n + self.yy / n;
         let q = x * x + y * y;
         let mz = mxx + myy;
@@ -143,7 +143,7 @@ impl Moments {
 
 /// Consecutive cells that are one line or arc.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Run {
+pub(super) struct StrokeRun {
     pub cells: Range<usize>,
     pub arc: bool,
     /// Description length.
@@ -153,14 +153,14 @@ pub(super) struct Run {
 /// Squared distances of the cells of a range from a line, from an arc, and the penalty of a line that is as bent as
 /// that arc; infinite where they are no such shape.
 #[derive(Clone, Copy)]
-struct Choice {
+struct ShapeCost {
     line: f64,
     arc: f64,
     bow: f64,
     round: bool,
 }
 
-impl Choice {
+impl ShapeCost {
     /// The cheapest description, and true for an arc.
     fn cost(&self, precision: f64) -> (f64, bool) {
         let bowed = precision * self.arc + self.bow;
@@ -171,14 +171,14 @@ impl Choice {
 }
 
 /// The choices of all ranges of cells.
-struct Choices {
+struct ShapeCosts {
     /// For each end, those of the starts before it.
-    rows: Vec<Vec<Choice>>,
+    rows: Vec<Vec<ShapeCost>>,
 }
 
-impl Choices {
-    fn of(cells: &Cells) -> Choices {
-        let (mut moments, mut along) = (vec![Moments::default()], vec![0.0]);
+impl ShapeCosts {
+    fn of(cells: &StrokeCells) -> ShapeCosts {
+        let (mut moments, mut along) = (vec![StrokeMoments::default()], vec![0.0]);
         for k in 0..cells.len() {
             moments.push(moments[k].plus(&cells.moments[k]));
             if k > 0 {
@@ -192,11 +192,11 @@ impl Choices {
             };
             (0..end.saturating_sub(1)).map(one).collect()
         };
-        Choices { rows: (0..=cells.len()).map(row).collect() }
+        ShapeCosts { rows: (0..=cells.len()).map(row).collect() }
     }
 
     /// The division of least cost, by dynamic programming.
-    fn cheapest(&self, precision: f64) -> (Vec<Run>, f64) {
+    fn cheapest(&self, precision: f64) -> (Vec<StrokeRun>, f64) {
         let n = self.rows.len() - 1;
         let mut best: Vec<(f64, usize, bool)> = vec![(f64::INFINITY, 0, false); n + 1];
         best[0].0 = 0.0;
@@ -216,7 +216,7 @@ impl Choices {
         let mut end = n;
         while end > 0 {
             let (cost, start, arc) = best[end];
-            runs.push(Run { cells: start..end, arc, cost: cost - best[start].0 });
+            runs.push(StrokeRun { cells: start..end, arc, cost: cost - best[start].0 });
             end = start;
         }
         runs.reverse();
@@ -225,13 +225,13 @@ impl Choices {
 }
 
 /// The shapes of the cells of a range, of a length along the stroke.
-fn choice(cells: &Cells, range: Range<usize>, sum: &Moments, length: f64) -> Choice {
+fn choice(cells: &StrokeCells, range: Range<usize>, sum: &StrokeMoments, length: f64) -> ShapeCost {
     let (first, last) = (range.start, range.end - 1);
     let [a, b] = [first, last].map(|k| cells.at[k]);
     let chord = distance(a, b);
     let straight = chord >= STRAIGHT * length;
     let line = if straight { sum.line() } else { f64::INFINITY };
-    let none = Choice { line, arc: f64::INFINITY, bow: f64::INFINITY, round: false };
+    let none = ShapeCost { line, arc: f64::INFINITY, bow: f64::INFINITY, round: false };
     if range.len() < ARC_CELLS {
         return none;
     }
@@ -247,36 +247,36 @@ fn choice(cells: &Cells, range: Range<usize>, sum: &Moments, length: f64) -> Cho
     let around = one * two > 0.0 && sweep > 0.85 * turned && sweep < 1.3 * turned + 0.1;
     let round = around && height > LEAST_ARC * chord;
     let arc = if round || straight { square } else { f64::INFINITY };
-    Choice { line, arc, bow, round }
+    ShapeCost { line, arc, bow, round }
 }
 
 /// A division under the assumption of a noise.
 #[derive(Clone, Debug)]
-pub(super) struct Division {
+pub(super) struct StrokeDivision {
     pub noise: f64,
-    pub runs: Vec<Run>,
+    pub runs: Vec<StrokeRun>,
     /// Description length of the runs, without that of the noise.
     pub cost: f64,
 }
 
-impl Division {
-    fn total(&self, cells: &Cells) -> f64 {
+impl StrokeDivision {
+    fn total(&self, cells: &StrokeCells) -> f64 {
         self.cost + cells.independent() * libm::log(self.noise)
     }
 }
 
 /// The divisions of cells for a ladder of noises, the likeliest first.
-pub(super) fn divisions(cells: &Cells) -> Vec<Division> {
+pub(super) fn divisions(cells: &StrokeCells) -> Vec<StrokeDivision> {
     if cells.len() < 4 {
-        let whole = Run { cells: 0..cells.len(), arc: false, cost: LINE };
-        return vec![Division { noise: cells.noise, runs: vec![whole], cost: LINE }];
+        let whole = StrokeRun { cells: 0..cells.len(), arc: false, cost: LINE };
+        return vec![StrokeDivision { noise: cells.noise, runs: vec![whole], cost: LINE }];
     }
-    let choices = Choices::of(cells);
+    let choices = ShapeCosts::of(cells);
     let mut out = Vec::new();
     let mut noise = cells.noise;
     while out.is_empty() || noise < MOST_NOISE {
         let (runs, cost) = choices.cheapest(cells.precision_of(noise));
-        out.push(Division { noise, runs, cost });
+        out.push(StrokeDivision { noise, runs, cost });
         noise *= STEP;
     }
     out.sort_by(|a, b| a.total(cells).total_cmp(&b.total(cells)));
@@ -284,9 +284,9 @@ pub(super) fn divisions(cells: &Cells) -> Vec<Division> {
 }
 
 /// The cells of a closed stroke from its sharpest corner on, or from the start of an arc or line of a smooth one.
-pub(super) fn from_corner(cells: Cells) -> Cells {
+pub(super) fn from_corner(cells: StrokeCells) -> StrokeCells {
     let divisions = divisions(&cells);
-    let Some(Division { runs, .. }) = divisions.first() else { return cells };
+    let Some(StrokeDivision { runs, .. }) = divisions.first() else { return cells };
     let sharpness = |k: usize| {
         let [a, b] = [k - 1, k].map(|k| end_directions(&cells, &runs[k]));
         turn(a[1], b[0]).abs()
@@ -297,7 +297,7 @@ pub(super) fn from_corner(cells: Cells) -> Cells {
 }
 
 /// Directions at the start and the end of a run, forward.
-pub(super) fn end_directions(cells: &Cells, run: &Run) -> [[f64; 2]; 2] {
+pub(super) fn end_directions(cells: &StrokeCells, run: &StrokeRun) -> [[f64; 2]; 2] {
     let sum = sum_of(cells, run.cells.clone());
     let [a, b] = [run.cells.start, run.cells.end - 1].map(|k| cells.at[k]);
     let line = || {
@@ -319,6 +319,6 @@ pub(super) fn end_directions(cells: &Cells, run: &Run) -> [[f64; 2]; 2] {
 }
 
 /// Sum of the moments of some cells.
-pub(super) fn sum_of(cells: &Cells, range: Range<usize>) -> Moments {
-    cells.moments[range].iter().fold(Moments::default(), |m, c| m.plus(c))
+pub(super) fn sum_of(cells: &StrokeCells, range: Range<usize>) -> StrokeMoments {
+    cells.moments[range].iter().fold(StrokeMoments::default(), |m, c| m.plus(c))
 }

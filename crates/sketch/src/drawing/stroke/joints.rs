@@ -1,7 +1,7 @@
 //! Joints of the shapes of a stroke: corners where they meet, and the pieces between these.
 
-use super::cells::Cells;
-use super::shapes::{Fitted, Shape};
+use super::cells::StrokeCells;
+use super::shapes::{FittedRun, StrokeShape};
 use super::{StrokeKind, StrokePiece, cross, distance, dot, to};
 use std::f64::consts::PI;
 
@@ -9,10 +9,10 @@ use std::f64::consts::PI;
 const PARALLEL: f64 = 0.08;
 
 /// The pieces of shapes, each from the joint before it to the joint after it.
-pub(super) fn joined(cells: &Cells, fitted: &[Fitted], closed: bool) -> Vec<StrokePiece> {
+pub(super) fn joined(cells: &StrokeCells, fitted: &[FittedRun], closed: bool) -> Vec<StrokePiece> {
     let n = fitted.len();
     if let [one] = fitted
-        && matches!(one.shape, Shape::Circle(..) | Shape::Ellipse(_))
+        && matches!(one.shape, StrokeShape::Circle(..) | StrokeShape::Ellipse(_))
     {
         return vec![piece(cells, one, [[0.0; 2]; 2])];
     }
@@ -34,7 +34,7 @@ pub(super) fn joined(cells: &Cells, fitted: &[Fitted], closed: bool) -> Vec<Stro
 }
 
 /// The end of a shape, near the first or last sample.
-fn own_end(cells: &Cells, fitted: &Fitted, last: bool) -> [f64; 2] {
+fn own_end(cells: &StrokeCells, fitted: &FittedRun, last: bool) -> [f64; 2] {
     let own = &cells.samples[fitted.cells.clone()];
     let sample = match last {
         true => own.last().and_then(|s| s.last()),
@@ -42,30 +42,30 @@ fn own_end(cells: &Cells, fitted: &Fitted, last: bool) -> [f64; 2] {
     };
     let Some(&p) = sample else { return [0.0; 2] };
     match &fitted.shape {
-        Shape::Spline(points) => points[if last { points.len() - 1 } else { 0 }],
+        StrokeShape::Spline(points) => points[if last { points.len() - 1 } else { 0 }],
         shape => foot(shape, p),
     }
 }
 
 /// The point of a shape near a position.
-fn foot(shape: &Shape, p: [f64; 2]) -> [f64; 2] {
+fn foot(shape: &StrokeShape, p: [f64; 2]) -> [f64; 2] {
     match shape {
-        Shape::Line(q, d) => {
+        StrokeShape::Line(q, d) => {
             let s = dot(to(*q, p), *d);
             [q[0] + s * d[0], q[1] + s * d[1]]
         }
-        Shape::Arc(c, r) | Shape::Circle(c, r) => {
+        StrokeShape::Arc(c, r) | StrokeShape::Circle(c, r) => {
             let way = to(*c, p);
             let length = libm::hypot(way[0], way[1]);
             if length == 0.0 { p } else { [0, 1].map(|k| c[k] + r * way[k] / length) }
         }
-        Shape::EllipseArc(e) | Shape::Ellipse(e) => e.at(e.parameter(p)),
-        Shape::Spline(_) => p,
+        StrokeShape::EllipseArc(e) | StrokeShape::Ellipse(e) => e.at(e.parameter(p)),
+        StrokeShape::Spline(_) => p,
     }
 }
 
 /// The point where two consecutive shapes meet.
-fn meeting(cells: &Cells, one: &Fitted, two: &Fitted) -> [f64; 2] {
+fn meeting(cells: &StrokeCells, one: &FittedRun, two: &FittedRun) -> [f64; 2] {
     let [a, b] = [cells.at[one.cells.end - 1], cells.at[two.cells.start]];
     let middle = [0, 1].map(|k| 0.5 * (a[k] + b[k]));
     let gap = distance(a, b);
@@ -73,13 +73,14 @@ fn meeting(cells: &Cells, one: &Fitted, two: &Fitted) -> [f64; 2] {
         distance(*p, middle) <= 1.5 * gap + 6.0 * cells.noise / sine.max(PARALLEL)
     };
     let found: Option<[f64; 2]> = match (&one.shape, &two.shape) {
-        (Shape::Line(p, d), Shape::Line(q, e)) => {
+        (StrokeShape::Line(p, d), StrokeShape::Line(q, e)) => {
             let sine = cross(*d, *e);
             let s = cross(to(*p, *q), *e) / sine;
             let at = [p[0] + s * d[0], p[1] + s * d[1]];
             (sine.abs() > PARALLEL && near(&at, sine.abs())).then_some(at)
         }
-        (Shape::Line(p, d), Shape::Arc(c, r)) | (Shape::Arc(c, r), Shape::Line(p, d)) => {
+        (StrokeShape::Line(p, d), StrokeShape::Arc(c, r))
+        | (StrokeShape::Arc(c, r), StrokeShape::Line(p, d)) => {
             let s = dot(to(*p, *c), *d);
             let foot = [p[0] + s * d[0], p[1] + s * d[1]];
             let square = r * r - distance(foot, *c).powi(2);
@@ -87,7 +88,7 @@ fn meeting(cells: &Cells, one: &Fitted, two: &Fitted) -> [f64; 2] {
             let both = [half, -half].map(|h| [foot[0] + h * d[0], foot[1] + h * d[1]]);
             nearest(both, middle).filter(|p| square >= 0.0 && near(p, half / r))
         }
-        (Shape::Arc(c, r), Shape::Arc(e, q)) => {
+        (StrokeShape::Arc(c, r), StrokeShape::Arc(e, q)) => {
             let (way, apart) = (to(*c, *e), distance(*c, *e));
             let along = 0.5 * (apart + (r * r - q * q) / apart);
             let square = r * r - along * along;
@@ -113,7 +114,7 @@ fn nearest(both: [[f64; 2]; 2], to: [f64; 2]) -> Option<[f64; 2]> {
 }
 
 /// The piece of a shape between two joints.
-fn piece(cells: &Cells, fitted: &Fitted, [start, end]: [[f64; 2]; 2]) -> StrokePiece {
+fn piece(cells: &StrokeCells, fitted: &FittedRun, [start, end]: [[f64; 2]; 2]) -> StrokePiece {
     let at = &cells.at[fitted.cells.clone()];
     let samples = cells.samples[fitted.cells.clone()].iter().flatten();
     let count = samples.clone().count().max(1) as f64;
@@ -130,11 +131,11 @@ fn piece(cells: &Cells, fitted: &Fitted, [start, end]: [[f64; 2]; 2]) -> StrokeP
         smooth: fitted.smooth,
     };
     match &fitted.shape {
-        Shape::Line(..) => {
+        StrokeShape::Line(..) => {
             let (way, length) = (to(start, end), distance(start, end).max(f64::MIN_POSITIVE));
             piece.residual = rms(&|p| cross(way, to(start, p)) / length);
         }
-        Shape::Arc(c, r) => {
+        StrokeShape::Arc(c, r) => {
             let sense = sense(*c, at);
             let (centre, radius) = through([start, end], *c, *r, at);
             piece.kind = StrokeKind::Arc;
@@ -142,14 +143,14 @@ fn piece(cells: &Cells, fitted: &Fitted, [start, end]: [[f64; 2]; 2]) -> StrokeP
             (piece.centre, piece.radius) = (Some(centre), Some(radius));
             piece.residual = rms(&|p| distance(centre, p) - radius);
         }
-        Shape::Circle(c, r) => {
+        StrokeShape::Circle(c, r) => {
             piece.kind = StrokeKind::Circle;
             piece.points.clear();
             (piece.centre, piece.radius) = (Some(*c), Some(*r));
             piece.residual = rms(&|p| distance(*c, p) - r);
         }
-        Shape::EllipseArc(e) | Shape::Ellipse(e) => {
-            let whole = matches!(fitted.shape, Shape::Ellipse(_));
+        StrokeShape::EllipseArc(e) | StrokeShape::Ellipse(e) => {
+            let whole = matches!(fitted.shape, StrokeShape::Ellipse(_));
             piece.kind = if whole { StrokeKind::Ellipse } else { StrokeKind::EllipseArc };
             (piece.centre, piece.half_axes) = (Some(e.centre), Some(e.axes()));
             piece.residual = rms(&|p| e.squares(&[p]).sqrt());
@@ -160,7 +161,7 @@ fn piece(cells: &Cells, fitted: &Fitted, [start, end]: [[f64; 2]; 2]) -> StrokeP
                 piece.points = vec![start, e.at(0.5 * (from + until)), end];
             }
         }
-        Shape::Spline(points) => {
+        StrokeShape::Spline(points) => {
             let mut points = points.clone();
             let last = points.len() - 1;
             let closed = distance(points[0], points[last]) < 1e-12;

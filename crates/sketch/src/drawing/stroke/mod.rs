@@ -13,7 +13,7 @@ mod division;
 mod joints;
 mod shapes;
 
-use cells::{Cells, closed_part, noise_of_samples};
+use cells::{StrokeCells, closed_part, noise_of_samples};
 
 /// A sample of a pen or mouse.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -145,7 +145,7 @@ pub fn fit_stroke(samples: &[PenSample]) -> Result<StrokeFit, StrokeFault> {
     // The stroke in units of its size.
     let points: Vec<[f64; 2]> =
         points.iter().map(|p| [0, 1].map(|k| (p[k] - middle[k]) / size)).collect();
-    let cells = Cells::of(&points, noise_of_samples(&points));
+    let cells = StrokeCells::of(&points, noise_of_samples(&points));
     let reach = (JOINED * cells.noise).max(JOINED_SIZE);
     let part = closed_part(&cells, reach);
     let closed = part.is_some();
@@ -154,7 +154,7 @@ pub fn fit_stroke(samples: &[PenSample]) -> Result<StrokeFit, StrokeFault> {
         None => cells,
     };
     // The noise and the shapes that are shortest to describe together.
-    let mut best: Option<(f64, f64, Vec<shapes::Fitted>)> = None;
+    let mut best: Option<(f64, f64, Vec<shapes::FittedRun>)> = None;
     for division in division::divisions(&cells) {
         cells.noise = division.noise;
         let least = cells.independent() * libm::log(division.noise);

@@ -1,7 +1,7 @@
 //! Shapes of the runs of a stroke; smooth sequences of runs as ellipses and splines.
 
-use super::cells::Cells;
-use super::division::{ARC, Run, end_directions, sum_of};
+use super::cells::StrokeCells;
+use super::division::{ARC, StrokeRun, end_directions, sum_of};
 use super::{SMOOTH, cross, distance, dot, to, turn};
 use std::f64::consts::{PI, TAU};
 use std::ops::Range;
@@ -42,7 +42,7 @@ const CONTROLS: Range<usize> = 4..33;
 
 /// A fitted shape.
 #[derive(Clone, Debug)]
-pub(super) enum Shape {
+pub(super) enum StrokeShape {
     /// Through a point, in a direction.
     Line([f64; 2], [f64; 2]),
     /// Centre and radius.
@@ -50,25 +50,29 @@ pub(super) enum Shape {
     /// A whole circle.
     Circle([f64; 2], f64),
     /// An arc of an ellipse.
-    EllipseArc(Conic),
+    EllipseArc(StrokeEllipse),
     /// A whole ellipse.
-    Ellipse(Conic),
+    Ellipse(StrokeEllipse),
     /// Bézier points.
     Spline(Vec<[f64; 2]>),
 }
 
 /// A shape with its cells.
 #[derive(Clone, Debug)]
-pub(super) struct Fitted {
+pub(super) struct FittedRun {
     pub cells: Range<usize>,
-    pub shape: Shape,
+    pub shape: StrokeShape,
     /// True if the next shape continues it.
     pub smooth: bool,
 }
 
 /// The shapes of runs, smooth sequences of them replaced by one ellipse or spline where that is shorter to
 /// describe.
-pub(super) fn fitted(cells: &Cells, runs: &[Run], closed: bool) -> (Vec<Fitted>, f64) {
+pub(super) fn fitted(
+    cells: &StrokeCells,
+    runs: &[StrokeRun],
+    closed: bool,
+) -> (Vec<FittedRun>, f64) {
     let n = runs.len();
     let ends: Vec<[[f64; 2]; 2]> = runs.iter().map(|r| end_directions(cells, r)).collect();
     let turned = |k: usize| turn(ends[k][1], ends[(k + 1) % n][0]).abs();
@@ -76,10 +80,10 @@ pub(super) fn fitted(cells: &Cells, runs: &[Run], closed: bool) -> (Vec<Fitted>,
     let arcs = runs.iter().any(|r| r.arc);
     let ring = closed && arcs && (n == 1 || (0..n).all(|k| turned(k) < BENT));
     if ring && let Some((shape, cost)) = whole_shape(cells, costs.iter().sum()) {
-        return (vec![Fitted { cells: 0..cells.len(), shape, smooth: true }], cost);
+        return (vec![FittedRun { cells: 0..cells.len(), shape, smooth: true }], cost);
     }
     // The cheapest way to each run, by one shape from a run before it on.
-    let mut best: Vec<(f64, usize, Option<Shape>)> = vec![(0.0, 0, None)];
+    let mut best: Vec<(f64, usize, Option<StrokeShape>)> = vec![(0.0, 0, None)];
     for end in 1..=n {
         let mut found = (best[end - 1].0 + costs[end - 1], end - 1, None);
         let mut cost = costs[end - 1];
@@ -100,7 +104,7 @@ pub(super) fn fitted(cells: &Cells, runs: &[Run], closed: bool) -> (Vec<Fitted>,
         }
         best.push(found);
     }
-    let mut out: Vec<Fitted> = Vec::new();
+    let mut out: Vec<FittedRun> = Vec::new();
     let mut end = n;
     while end > 0 {
         let (_, start, shape) = best[end].clone();
@@ -108,15 +112,15 @@ pub(super) fn fitted(cells: &Cells, runs: &[Run], closed: bool) -> (Vec<Fitted>,
         let shape = shape.unwrap_or_else(|| {
             let sum = sum_of(cells, range.clone());
             match sum.circle().filter(|_| runs[start].arc) {
-                Some((centre, radius, _)) => Shape::Arc(centre, radius),
-                None => Shape::Line([sum.x / sum.n, sum.y / sum.n], sum.direction()),
+                Some((centre, radius, _)) => StrokeShape::Arc(centre, radius),
+                None => StrokeShape::Line([sum.x / sum.n, sum.y / sum.n], sum.direction()),
             }
         });
         let next = end % n;
         let smooth = (closed || end < n)
             && (runs[end - 1].arc || runs[next].arc)
             && turned(end - 1) < SMOOTH;
-        out.push(Fitted { cells: range, shape, smooth });
+        out.push(FittedRun { cells: range, shape, smooth });
         end = start;
     }
     out.reverse();
@@ -124,18 +128,22 @@ pub(super) fn fitted(cells: &Cells, runs: &[Run], closed: bool) -> (Vec<Fitted>,
 }
 
 /// Splines with those that continue them, and with short lines and arcs beside them, where one spline is as near.
-fn with_neighbours(cells: &Cells, fitted: Vec<Fitted>) -> Vec<Fitted> {
-    let length = |f: &Fitted| -> f64 {
+fn with_neighbours(cells: &StrokeCells, fitted: Vec<FittedRun>) -> Vec<FittedRun> {
+    let length = |f: &FittedRun| -> f64 {
         cells.at[f.cells.clone()].windows(2).map(|w| distance(w[0], w[1])).sum()
     };
-    let mut out: Vec<Fitted> = Vec::new();
+    let mut out: Vec<FittedRun> = Vec::new();
     for next in fitted {
         let joined = out.last().filter(|one| one.smooth).and_then(|one| {
             let [a, b] = [one, &next].map(length);
             let wanted = match (&one.shape, &next.shape) {
-                (Shape::Spline(_), Shape::Spline(_)) => true,
-                (Shape::Spline(_), Shape::Line(..) | Shape::Arc(..)) => b < BESIDE * a,
-                (Shape::Line(..) | Shape::Arc(..), Shape::Spline(_)) => a < BESIDE * b,
+                (StrokeShape::Spline(_), StrokeShape::Spline(_)) => true,
+                (StrokeShape::Spline(_), StrokeShape::Line(..) | StrokeShape::Arc(..)) => {
+                    b < BESIDE * a
+                }
+                (StrokeShape::Line(..) | StrokeShape::Arc(..), StrokeShape::Spline(_)) => {
+                    a < BESIDE * b
+                }
                 _ => false,
             };
             let range = one.cells.start..next.cells.end;
@@ -145,8 +153,8 @@ fn with_neighbours(cells: &Cells, fitted: Vec<Fitted>) -> Vec<Fitted> {
             let controls = (points.len() - 1) / 3 + 3;
             let squares = (cost - controls as f64 * CONTROL) / precision;
             let near = squares <= at.len() as f64 * (AS_NEAR * cells.noise).powi(2);
-            let shape = Shape::Spline(points);
-            near.then_some(Fitted { cells: range, shape, smooth: next.smooth })
+            let shape = StrokeShape::Spline(points);
+            near.then_some(FittedRun { cells: range, shape, smooth: next.smooth })
         });
         match joined {
             Some(one) => {
@@ -160,11 +168,12 @@ fn with_neighbours(cells: &Cells, fitted: Vec<Fitted>) -> Vec<Fitted> {
 }
 
 /// A closed smooth outline as a circle, ellipse or closed spline that costs less than its runs.
-fn whole_shape(cells: &Cells, cost: f64) -> Option<(Shape, f64)> {
+fn whole_shape(cells: &StrokeCells, cost: f64) -> Option<(StrokeShape, f64)> {
     let precision = cells.precision();
     let sum = sum_of(cells, 0..cells.len());
     let circle = sum.circle().filter(|c| c.1 < LARGEST);
-    let ellipse = Conic::fit(&cells.at, cost / precision).map(|c| (c, c.squares(&cells.at)));
+    let ellipse =
+        StrokeEllipse::fit(&cells.at, cost / precision).map(|c| (c, c.squares(&cells.at)));
     let spline = spline(&cells.at, true, precision, cost);
     let by_circle = circle.map_or(f64::INFINITY, |c| precision * c.2 + ARC);
     let by_ellipse = ellipse.map_or(f64::INFINITY, |e| precision * e.1 + 6.0 * PARAMETER);
@@ -175,20 +184,20 @@ fn whole_shape(cells: &Cells, cost: f64) -> Option<(Shape, f64)> {
     }
     let round = ellipse.is_none_or(|(c, _)| c.half[1] >= ROUND * c.half[0]);
     let shape = if by_spline < by_circle.min(by_ellipse) {
-        spline.map(|s| Shape::Spline(s.0))
+        spline.map(|s| StrokeShape::Spline(s.0))
     } else if by_circle <= by_ellipse || round {
-        circle.map(|(centre, radius, _)| Shape::Circle(centre, radius))
+        circle.map(|(centre, radius, _)| StrokeShape::Circle(centre, radius))
     } else {
-        ellipse.map(|(conic, _)| Shape::Ellipse(conic))
+        ellipse.map(|(conic, _)| StrokeShape::Ellipse(conic))
     };
     shape.map(|shape| (shape, least))
 }
 
 /// Smooth runs as a part of an ellipse or a spline that costs less, with its cost.
-fn joined_shape(cells: &Cells, range: Range<usize>, cost: f64) -> Option<(Shape, f64)> {
+fn joined_shape(cells: &StrokeCells, range: Range<usize>, cost: f64) -> Option<(StrokeShape, f64)> {
     let precision = cells.precision();
     let at = &cells.at[range];
-    let conic = Conic::fit(at, cost / precision).filter(|c| c.follows(at));
+    let conic = StrokeEllipse::fit(at, cost / precision).filter(|c| c.follows(at));
     let ellipse = conic.map(|c| (c, precision * c.squares(at) + 7.0 * PARAMETER));
     let spline = spline(at, false, precision, cost);
     let by_ellipse = ellipse.map_or(f64::INFINITY, |e| e.1);
@@ -196,15 +205,15 @@ fn joined_shape(cells: &Cells, range: Range<usize>, cost: f64) -> Option<(Shape,
     if cost <= by_ellipse.min(by_spline) {
         None
     } else if by_ellipse <= by_spline {
-        ellipse.map(|e| (Shape::EllipseArc(e.0), e.1))
+        ellipse.map(|e| (StrokeShape::EllipseArc(e.0), e.1))
     } else {
-        spline.map(|s| (Shape::Spline(s.0), s.1))
+        spline.map(|s| (StrokeShape::Spline(s.0), s.1))
     }
 }
 
 /// An ellipse.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Conic {
+pub(super) struct StrokeEllipse {
     pub centre: [f64; 2],
     /// Half-axes, the longer one first.
     pub half: [f64; 2],
@@ -212,10 +221,10 @@ pub(super) struct Conic {
     pub angle: f64,
 }
 
-impl Conic {
+impl StrokeEllipse {
     /// The ellipse of least Sampson distances, from that of Halíř and Flusser on; `None` if the sum of their squares
     /// is far above `most`.
-    fn fit(at: &[[f64; 2]], most: f64) -> Option<Conic> {
+    fn fit(at: &[[f64; 2]], most: f64) -> Option<StrokeEllipse> {
         let mut conic = halir_flusser(at)?;
         let mut squares = conic.squares(at);
         if squares.is_nan() || squares >= FAR * most {
@@ -230,7 +239,7 @@ impl Conic {
                 .map(|k| {
                     let mut moved = own;
                     moved[k] += step;
-                    let moved = Conic::of(moved);
+                    let moved = StrokeEllipse::of(moved);
                     at.iter().zip(&base).map(|(p, b)| (moved.off(*p) - b) / step).collect()
                 })
                 .collect();
@@ -245,7 +254,7 @@ impl Conic {
             let Some(change) = solved(matrix) else { break };
             let mut next = own;
             next.iter_mut().zip(&change).for_each(|(a, b)| *a += b[0]);
-            let next = Conic::of(next);
+            let next = StrokeEllipse::of(next);
             let found = next.squares(at);
             if found < squares {
                 let done = squares - found <= 1e-9 * squares;
@@ -269,10 +278,10 @@ impl Conic {
         [self.centre[0], self.centre[1], self.half[0], self.half[1], self.angle]
     }
 
-    fn of([x, y, a, b, angle]: [f64; 5]) -> Conic {
+    fn of([x, y, a, b, angle]: [f64; 5]) -> StrokeEllipse {
         let (a, b) = (a.abs(), b.abs());
         let quarter = if b > a { 0.5 * PI } else { 0.0 };
-        Conic { centre: [x, y], half: [a.max(b), a.min(b)], angle: angle + quarter }
+        StrokeEllipse { centre: [x, y], half: [a.max(b), a.min(b)], angle: angle + quarter }
     }
 
     /// A point in units of the half-axes.
@@ -341,7 +350,7 @@ impl Conic {
 }
 
 /// The ellipse of least algebraic distances.
-fn halir_flusser(at: &[[f64; 2]]) -> Option<Conic> {
+fn halir_flusser(at: &[[f64; 2]]) -> Option<StrokeEllipse> {
     let n = at.len() as f64;
     if at.len() < 6 {
         return None;
@@ -395,13 +404,17 @@ fn halir_flusser(at: &[[f64; 2]]) -> Option<Conic> {
         let a2 = [0, 1, 2].map(|i| dot3([t[i][0], t[i][1], t[i][2]], a1));
         let conic = ellipse_of([a1[0], a1[1], a1[2], a2[0], a2[1], a2[2]])?;
         let centre = [0, 1].map(|k| mean[k] + scale * conic.centre[k]);
-        return Some(Conic { centre, half: conic.half.map(|h| scale * h), angle: conic.angle });
+        return Some(StrokeEllipse {
+            centre,
+            half: conic.half.map(|h| scale * h),
+            angle: conic.angle,
+        });
     }
     None
 }
 
 /// The ellipse a x² + b x y + c y² + d x + e y + f = 0.
-fn ellipse_of([a, b, c, d, e, f]: [f64; 6]) -> Option<Conic> {
+fn ellipse_of([a, b, c, d, e, f]: [f64; 6]) -> Option<StrokeEllipse> {
     let det = 4.0 * a * c - b * b;
     let x = (b * e - 2.0 * c * d) / det;
     let y = (b * d - 2.0 * a * e) / det;
@@ -412,7 +425,7 @@ fn ellipse_of([a, b, c, d, e, f]: [f64; 6]) -> Option<Conic> {
     let across = a * sin * sin - b * cos * sin + c * cos * cos;
     let half = [level / along, level / across].map(f64::sqrt);
     let good = half.iter().all(|h| h.is_finite() && *h > 0.0);
-    good.then(|| Conic::of([x, y, half[0], half[1], angle]))
+    good.then(|| StrokeEllipse::of([x, y, half[0], half[1], angle]))
 }
 
 /// Real roots of x³ + a x² + b x + c.
