@@ -4233,14 +4233,21 @@ def hyperbolic(
     """A grid marched off a surface or a curve by the hyperbolic equations (Steger and Chaussee 1980;
     Chan and Steger 1992): its lines leave at right angles, and its layers are at given heights.
 
-    Off a surface, along s_i x s_j: the value is a block, the surface its first layer. Off a curve,
+    Off a surface, along s_i x s_j: the value is a block, the surface its first layer. Off a list of
+    surfaces, marched as one front: the value is the list of their blocks. Edges whose points
+    coincide to 1e-8 of the size are joined, also of one surface, in either direction, with any
+    number of edges at a point; collapsed edges are poles; all blocks are on the side of the first
+    surface, so that of a surface with the opposite normal is left-handed. Off a curve,
     to the left of its direction for a view against `normal`: the value is the surface whose line
     g[k,] is layer k, in the plane of the curve or on the surface `on` (a collar). The first layer
     has its height everywhere, also at corners and sharp tails; heights farther out are means.
     `sides` gives conditions at edges, as "i1 pole, j1 symmetry z, jn symmetry z": "pole" for an
     edge that is one point; "symmetry x", "y" or "z" for an edge in a symmetry plane of constant x,
-    y or z; "constant x", "y" or "z" for an edge that only keeps that coordinate; "periodic" for two
-    coincident edges; edges without a condition are free. The ends of a curve are "i1" and "im".
+    y or z; "constant x", "y" or "z" for an edge that only keeps that coordinate, "constant xy" and the like
+    for one that keeps two; "splay 0.25" for a free edge that leans outward, continued beyond itself
+    by cells 1.25 times as long; "periodic" for two coincident edges; edges without a condition are
+    free. Of a list, "symmetry y" is the condition of all open edges, and "2 j1 constant x" that of
+    one edge of surface 2. The ends of a curve are "i1" and "im".
     Every cell is tested; a layer that would fold is marched with weaker constraints and more
     smoothing, or is an error with layer, position and cause. `stop` ends a march early: "keep"
     (below the layer that cannot be marched), "jacobian 0.1", "skew 0.9", "growth 1.5" (below the
@@ -4250,12 +4257,13 @@ def hyperbolic(
     Parameters
     ----------
     s : value
-        The surface, or the curve.
+        The surface, the list of surfaces, or the curve.
     heights : list of number
         The distances of the layers, the first 0.
     sides : text, optional
         Conditions at the edges: "i1", "im", "j1", "jn" with "pole", "free", "periodic",
-        "symmetry x", "symmetry y", "symmetry z", "constant x", "constant y" or "constant z".
+        "symmetry x", "symmetry y", "symmetry z", "constant x", "constant xy", "splay 0.25" and
+        the like; of a list without an edge, or with the number of a surface before it.
     smoothing : number, optional
         Strength of the smoothing of converging lines; 0: none. 0 to 10, default 1.
     normal : vector, optional

@@ -40,8 +40,9 @@ pub use hex_mesh::{
 };
 pub use marching::{
     FailureCause, Hyperbolic, JoinFault, MarchBoundary, MarchFailure, MarchPlace, MarchReport,
-    Marched, MarchedBlocks, OpenFrontEdges, Stop, StopReason, Support, hyperbolic, hyperbolic_curve,
-    hyperbolic_curve_until, hyperbolic_surfaces, hyperbolic_surfaces_until, hyperbolic_until,
+    Marched, MarchedBlocks, OpenFrontEdges, Stop, StopReason, Support, hyperbolic,
+    hyperbolic_curve, hyperbolic_curve_until, hyperbolic_surfaces, hyperbolic_surfaces_until,
+    hyperbolic_until,
 };
 pub use pole_cells::PoleCell;
 pub use quality::{QualityMetric, folded_cells, folded_cells_until, quality, quality_until};

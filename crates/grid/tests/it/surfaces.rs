@@ -2,7 +2,7 @@
 
 use crate::walls::geometric;
 use moldloft_grid::{
-    FailureCause, GridError, Hyperbolic, JoinFault, MarchBoundary, MarchedBlocks, OpenEdges,
+    FailureCause, GridError, Hyperbolic, JoinFault, MarchBoundary, MarchedBlocks, OpenFrontEdges,
     StopReason, SurfaceGrid, VolumeGrid, hyperbolic, hyperbolic_surfaces,
 };
 use moldloft_num::{Dual4, Real, Vec3};
@@ -92,7 +92,7 @@ fn hand(block: &VolumeGrid<f64>) -> f64 {
 }
 
 fn march(surfaces: &[SurfaceGrid<f64>], heights: Vec<f64>) -> MarchedBlocks<f64> {
-    let free = OpenEdges::all(surfaces.len(), MarchBoundary::Free);
+    let free = OpenFrontEdges::all(surfaces.len(), MarchBoundary::Free);
     hyperbolic_surfaces(surfaces, &free, &Hyperbolic::new(heights)).unwrap()
 }
 
@@ -292,7 +292,7 @@ fn free_edges_splay() {
     let surfaces = [flat(0.0, 1.0), flat(1.0, 2.0)];
     let heights = geometric(0.5, 1e-2, 15);
     let width = |splay: f64| {
-        let edges = OpenEdges::all(2, MarchBoundary::Splay(splay));
+        let edges = OpenFrontEdges::all(2, MarchBoundary::Splay(splay));
         let marched =
             hyperbolic_surfaces(&surfaces, &edges, &Hyperbolic::new(heights.clone())).unwrap();
         check(&marched, 1e-2);
@@ -329,7 +329,7 @@ fn half_bodies_stay_in_their_plane() {
         .collect();
     assert_eq!(half.len(), 5);
     let heights = geometric(3.0, 1e-3, 25);
-    let edges = OpenEdges::all(5, MarchBoundary::Symmetry(2));
+    let edges = OpenFrontEdges::all(5, MarchBoundary::Symmetry(2));
     let marched = hyperbolic_surfaces(&half, &edges, &Hyperbolic::new(heights.clone())).unwrap();
     check(&marched, 1e-3);
     let all: Vec<Vec3> = lines(&march(&whole, heights).blocks).into_values().flatten().collect();
@@ -373,7 +373,7 @@ fn wings_with_collapsed_tips() {
         let k = (i as isize - (m as isize - 1)).unsigned_abs();
         (x(k), if i < m { -1.0 } else { 1.0 })
     });
-    let mut edges = OpenEdges::all(2, MarchBoundary::Free);
+    let mut edges = OpenFrontEdges::all(2, MarchBoundary::Free);
     edges.stated = vec![[None, None, Some(MarchBoundary::Symmetry(1)), None]; 2];
     let options = Hyperbolic::new(geometric(5.0, 1e-3, 31));
     let two = hyperbolic_surfaces(&[upper, lower], &edges, &options).unwrap();
@@ -399,7 +399,7 @@ fn pinched_tips_are_refused() {
             Vec3::of(u, v, sign * u * (1.0 - u) * (1.0 - v * v))
         })
     };
-    let mut edges = OpenEdges::all(2, MarchBoundary::Free);
+    let mut edges = OpenFrontEdges::all(2, MarchBoundary::Free);
     edges.stated = vec![[None, None, Some(MarchBoundary::Symmetry(1)), None]; 2];
     let found = fault(&[half(1.0), half(-1.0)], &edges);
     assert!(matches!(found, JoinFault::TwoCells { .. }), "{found}");
@@ -438,7 +438,7 @@ fn poles_and_seams_are_found() {
     }
 }
 
-fn fault(surfaces: &[SurfaceGrid<f64>], edges: &OpenEdges) -> JoinFault {
+fn fault(surfaces: &[SurfaceGrid<f64>], edges: &OpenFrontEdges) -> JoinFault {
     match hyperbolic_surfaces(surfaces, edges, &Hyperbolic::new(vec![0.0, 0.01, 0.02])) {
         Err(GridError::Join(fault)) => *fault,
         other => panic!("{other:?}"),
@@ -453,7 +453,7 @@ fn surfaces_that_are_no_front_are_refused_by_name() {
             Vec3::of(from[0] + u * (to[0] - from[0]), from[1] + v * (to[1] - from[1]), 0.0)
         })
     };
-    let free = |count: usize| OpenEdges::all(count, MarchBoundary::Free);
+    let free = |count: usize| OpenFrontEdges::all(count, MarchBoundary::Free);
     let left = flat(5, 5, [0.0, 0.0], [1.0, 1.0]);
     // Half as many points along the common edge, and points between.
     for other in [3, 4] {
@@ -487,7 +487,7 @@ fn surfaces_that_are_no_front_are_refused_by_name() {
     edges.stated[0][1] = Some(MarchBoundary::Constant(0));
     let pair = [left.clone(), right];
     assert!(matches!(fault(&pair, &edges), JoinFault::NotOpen { surface: 1, .. }));
-    let planes = OpenEdges::all(2, MarchBoundary::Symmetry(1));
+    let planes = OpenFrontEdges::all(2, MarchBoundary::Symmetry(1));
     assert!(matches!(fault(&pair, &planes), JoinFault::NotPlane { axis: 1, .. }));
     edges.stated[0] = [Some(MarchBoundary::Pole), None, None, None];
     assert!(matches!(fault(&pair, &edges), JoinFault::Open { surface: 1, .. }));
@@ -507,7 +507,7 @@ fn fronts_of_two_surfaces_meet() {
             if z == 0.0 { Vec3::of(u, v, z) } else { Vec3::of(v, u, z + 0.01 * u) }
         })
     });
-    let free = OpenEdges::all(2, MarchBoundary::Free);
+    let free = OpenFrontEdges::all(2, MarchBoundary::Free);
     let mut options = Hyperbolic::new(geometric(0.8, 0.02, 17));
     let error = hyperbolic_surfaces(&surfaces, &free, &options).unwrap_err();
     let GridError::March(failure) = error else { panic!("{error}") };
@@ -530,7 +530,7 @@ fn derivatives_are_those_of_the_front() {
             Vec3::new(T::from(u.x), h * (u.y * 5.0), T::from(0.6 * u.z))
         });
         let heights = geometric(1.0, 2e-2, 9).into_iter().map(T::from).collect();
-        let free = OpenEdges::all(6, MarchBoundary::Free);
+        let free = OpenFrontEdges::all(6, MarchBoundary::Free);
         let marched = hyperbolic_surfaces(&surfaces, &free, &Hyperbolic::new(heights)).unwrap();
         marched.blocks.iter().map(|block| block.layers().remove(8)).collect()
     }

@@ -1,4 +1,4 @@
-//! StrokeCells of a stroke: samples gathered over equal lengths, and the noise of the stroke.
+//! Cells of a stroke: samples gathered over equal lengths, and the noise of the stroke.
 
 use super::division::StrokeMoments;
 use super::{cross, distance, dot, to};

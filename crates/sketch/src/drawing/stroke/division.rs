@@ -1,4 +1,4 @@
-//! StrokeDivision of a stroke into lines and arcs of least description length.
+//! Division of a stroke into lines and arcs of least description length.
 
 use super::cells::StrokeCells;
 use super::{cross, distance, dot, to, turn};
@@ -98,7 +98,7 @@ impl StrokeMoments {
         let n = self.n;
         let (x, y) = (self.x / n, self.y / n);
         let [mxx, mxy, myy] = self.covariance();
-        // StrokeMoments about the mean; z is the squared distance from it.
+        // Moments about the mean; z is the squared distance from it.
         let z = self.xx / n + self.yy / n;
         let q = x * x + y * y;
         let mz = mxx + myy;
