@@ -224,14 +224,18 @@ export class Board {
   private async carryOut(changes: Facts[]): Promise<boolean> {
     if (!changes.length) return true
     await this.editor.synced()
-    const answer = await this.ask('board_edit', { changes })
-    this.editor.apply(answer.edits, answer.version, named(changes))
-    this.text = this.editor.text
+    this.written(await this.ask('board_edit', { changes }), named(changes))
     this.say('')
+    return true
+  }
+
+  /** Takes the edits and facts of an answer, as a step of the history. */
+  private written(answer: Facts, name: string): void {
+    this.editor.apply(answer.edits, answer.version, name)
+    this.text = this.editor.text
     // The page stays where it is under a hand.
     this.fitted = true
     this.take(answer as unknown as Drawn)
-    return true
   }
 
   private take(drawn: Drawn): void {
@@ -285,7 +289,7 @@ export class Board {
   aim(aim: Aim | null): void {
     this.aimed = aim
     const start = this.chain.at(-1)?.at ?? this.pointer.begun
-    this.painter.aim(this.tool === 'draw' ? aim : null, start, this.drawn.section, this.lock)
+    this.painter.aim(this.tool === 'draw' ? aim : null, start, this.drawn.section, this.lock, this.pointer.trail)
   }
 
   private buttons(): void {
@@ -427,6 +431,17 @@ export class Board {
       const end = await this.corner(to, start.at, free)
       await this.draw(start, end)
       this.endChain()
+    })
+  }
+
+  /** A stroke with corners or bends: lines, arcs and closed curves as its samples show. */
+  trace(samples: number[][]): Promise<unknown> {
+    return this.later(async () => {
+      this.endChain()
+      await this.editor.synced()
+      const answer = await this.ask('board_stroke', { samples })
+      if (answer.edits) this.written(answer, 'Stroke')
+      this.say(answer.remarks.join(' '))
     })
   }
 

@@ -302,10 +302,13 @@ export class Painter {
     this.triad.dataset.origin = origin.join()
   }
 
-  /** What the pointer means, and the line that would be drawn. */
-  aim(aim: Aim | null, start: Place | null, section: string | null, lock: string): void {
+  /** What the pointer means, and the line that would be drawn, or the `trail` of a stroke that is more than a line. */
+  aim(aim: Aim | null, start: Place | null, section: string | null, lock: string, trail: Place[]): void {
     const parts: SVGElement[] = []
-    if (aim) {
+    if (trail.length) {
+      const points = trail.map((p) => this.page.to(p).join()).join(' ')
+      parts.push(s('polyline', { class: 'trail', points }))
+    } else if (aim) {
       const at = this.page.to(aim.at)
       for (const of of aim.of ?? []) {
         const p = this.places.get(of)

@@ -9,6 +9,9 @@ import { Contacts } from './contacts'
 export const REACH = 11
 const CLICK = 5
 
+/** Pixels: how far a stroke leaves the line between its ends to be more than that line. */
+const BOW = 8
+
 type Kind = 'draw' | 'move' | 'pan' | 'turn' | 'axis' | 'none'
 
 interface Press {
@@ -21,6 +24,8 @@ interface Press {
   points: Map<number, Place>
   axis: string
   angles: number[]
+  /** Of a stroke: page coordinates, time and pressure of each sample. */
+  samples: number[][]
 }
 
 /** What pointers do to the board. */
@@ -39,6 +44,7 @@ export type PointerActs = Pick<
   | 'point'
   | 'click'
   | 'stroke'
+  | 'trace'
   | 'held'
   | 'marked'
   | 'drag'
@@ -94,6 +100,32 @@ export class BoardPointer {
     return this.pressed?.kind === 'draw' && this.pressed.moved ? this.page.from(this.pressed.from) : null
   }
 
+  /** The samples of a stroke that is more than a line; empty for others. */
+  get trail(): Place[] {
+    const { pressed } = this
+    return pressed?.kind === 'draw' && this.bows(pressed) ? pressed.samples.map(([u, v]) => [u, v]) : []
+  }
+
+  /** True for a stroke that leaves the line between its ends, or comes back to its start. */
+  private bows({ samples }: Press): boolean {
+    const [a, b] = [samples[0], samples[samples.length - 1]]
+    const [u, v] = [b[0] - a[0], b[1] - a[1]]
+    const length = Math.hypot(u, v)
+    const away = ([x, y]: number[]) => {
+      const [du, dv] = [x - a[0], y - a[1]]
+      const along = length ? (du * u + dv * v) / length : 0
+      const beyond = Math.max(0, -along, along - length)
+      return Math.hypot(length ? (du * v - dv * u) / length : Math.hypot(du, dv), length ? beyond : 0)
+    }
+    return samples.some((sample) => away(sample) * this.page.scale > BOW)
+  }
+
+  private sampled(e: PointerEvent): number[][] {
+    const all = e.getCoalescedEvents?.() ?? []
+    const sample = (p: PointerEvent) => [...this.page.from(this.at(p)), p.timeStamp, p.pressure]
+    return (all.length ? all : [e]).map(sample)
+  }
+
   private at(e: { clientX: number; clientY: number }): Place {
     const box = this.svg.getBoundingClientRect()
     return [e.clientX - box.left, e.clientY - box.top]
@@ -112,7 +144,18 @@ export class BoardPointer {
     this.svg.setPointerCapture(e.pointerId)
     const press = (kind: Kind, more: Partial<Press> = {}) => {
       const points = new Map<number, Place>()
-      this.pressed = { id: e.pointerId, at, from: at, kind, moved: false, points, axis: '', angles: [], ...more }
+      this.pressed = {
+        id: e.pointerId,
+        at,
+        from: at,
+        kind,
+        moved: false,
+        points,
+        axis: '',
+        angles: [],
+        samples: [],
+        ...more,
+      }
     }
     const mark = target.closest('[data-mark]')?.getAttribute('data-mark')
     const axis = target.closest('[data-axis]')?.getAttribute('data-axis')
@@ -126,7 +169,7 @@ export class BoardPointer {
     else if (mark && !board.chaining) {
       press('none')
       board.openMark(mark)
-    } else if (board.tool === 'draw') press('draw')
+    } else if (board.tool === 'draw') press('draw', { samples: [[...this.page.from(at), e.timeStamp, e.pressure]] })
     else {
       const hit = this.painter.hit(at, board.drawn, REACH)
       const key = hit.point ? `p${hit.point}` : hit.line ? `l${hit.line}` : ''
@@ -166,6 +209,7 @@ export class BoardPointer {
       const [dx, dy] = [at[0] - pressed.at[0], at[1] - pressed.at[1]]
       pressed.moved ||= Math.hypot(at[0] - pressed.from[0], at[1] - pressed.from[1]) > CLICK
       pressed.at = at
+      if (pressed.kind === 'draw') pressed.samples.push(...this.sampled(e))
       if (!pressed.moved) return
       if (pressed.kind === 'pan') {
         this.page.pan(dx, dy)
@@ -214,7 +258,8 @@ export class BoardPointer {
     if (pressed.kind !== 'draw') return
     const free = e.shiftKey
     // A drawing during the gesture may scroll the page.
-    if (pressed.moved) void board.stroke(this.page.from(pressed.from), this.page.from(at), free)
+    if (this.bows(pressed)) void board.trace(pressed.samples)
+    else if (pressed.moved) void board.stroke(this.page.from(pressed.from), this.page.from(at), free)
     else void board.click(this.page.from(at), free)
   }
 

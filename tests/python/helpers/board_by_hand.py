@@ -78,6 +78,17 @@ class BoardHand(Bench):
         self.events += 1
         self.hand("board.settled()")
 
+    def trace(self, places: list[tuple[float, float]]) -> None:
+        """A stroke through places on the page."""
+        self.move(*places[0])
+        (x, y), (right, _), (_, up) = self.at(0, 0), self.at(1, 0), self.at(0, 1)
+        self.page.mouse.down()
+        for u, v in places[1:]:
+            self.page.mouse.move(x + u * (right - x), y + v * (up - y))
+        self.page.mouse.up()
+        self.events += 2 + len(places)
+        self.settle()
+
     def key(self, *keys: str) -> None:
         for key in keys:
             self.page.keyboard.press(key)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import base64
+import itertools
 import math
 import os
 import re
@@ -554,3 +555,33 @@ def inner(row: str) -> bool:
     words = row.split()
     points = words[1:2] if words[0] == "POINT" else words[2:5:2] if words[0] == "LINE" else []
     return any(int(p) > 8 for p in points)
+
+
+def test_strokes_become_lines_arcs_and_circles(board: Callable[..., BoardHand]) -> None:
+    b = board()
+    b.begin("xy")
+
+    def along(*corners: tuple[float, float]) -> list[tuple[float, float]]:
+        # A steady hand: half a unit of tremor.
+        parts = [(p, q, k / 25) for p, q in itertools.pairwise(corners) for k in range(25)]
+        path = [(p[0] + t * (q[0] - p[0]), p[1] + t * (q[1] - p[1])) for p, q, t in parts]
+        path.append(corners[-1])
+        return [
+            (u + 0.5 * math.sin(1.7 * k), v + 0.5 * math.cos(2.3 * k))
+            for k, (u, v) in enumerate(path)
+        ]
+
+    b.trace(along((0, 0), (300, 2), (299, 200), (1, 198), (2, 3)))
+    state = b.settle()
+    assert len(state["drawn"]["lines"]) == 4 and len(state["drawn"]["points"]) == 4
+    # A line drawn nearly straight stays one line, from corner to corner.
+    b.trace(along((0, 0), (299, 200)))
+    assert len(b.settle()["drawn"]["lines"]) == 5
+    b.key("Control+z")
+    turn = [k * math.tau / 60 for k in range(61)]
+    b.trace([(150 + 60 * math.cos(a), 100 + 60 * math.sin(a)) for a in turn])
+    assert re.search("CIRCLE", b.text())
+    for _ in range(2):
+        b.key("Control+z")
+    assert b.settle()["drawn"]["lines"] == []
+    assert not b.faults
