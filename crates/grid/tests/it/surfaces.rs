@@ -12,7 +12,7 @@ use std::f64::consts::{FRAC_PI_4, PI};
 /// The six faces of a cube of edge 2, with equal angles between lines seen from its centre, mapped.
 fn cubed<T: Real>(n: usize, map: impl Fn(Vec3) -> Vec3<T>) -> Vec<SurfaceGrid<T>> {
     let face = |k: usize| {
-        let (axis, sign) = (k / 2, if k % 2 == 0 { 1.0 } else { -1.0 });
+        let (axis, sign) = (k / 2, if k.is_multiple_of(2) { 1.0 } else { -1.0 });
         SurfaceGrid::from_fn(n, n, |i, j| {
             let at = |k: usize| (FRAC_PI_4 * (2.0 * k as f64 / (n - 1) as f64 - 1.0)).tan();
             let mut p = [0.0; 3];
