@@ -4,8 +4,7 @@
 //! narrower than twice its height. A grid without folded cells covers its region once if its
 //! boundary — the wall, the last layer and the open sides — does not cross itself.
 
-use moldloft_num::{Box3, Real, Vec3};
-use std::ops::Range;
+use moldloft_num::{Box3, BoxTree, Real, Vec3};
 
 /// Part of the boundary: an edge (off curves) or a triangle (off surfaces).
 pub(super) struct BoundaryPart {
@@ -48,7 +47,7 @@ pub(super) fn first_crossing(
     front: usize,
     crosses: impl Fn(&BoundaryPart, &BoundaryPart) -> bool,
 ) -> Option<[usize; 2]> {
-    let tree = PartTree::new(parts);
+    let tree = BoxTree::new(parts.iter().map(BoundaryPart::bounds).collect());
     let mut near = Vec::new();
     for (k, part) in parts[..front].iter().enumerate() {
         near.clear();
@@ -98,73 +97,4 @@ fn pierces(from: Vec3, to: Vec3, [a, b, c]: [Vec3; 3]) -> bool {
     let side = |p: Vec3, q: Vec3| line.dot((p - from).cross(q - from));
     let (x, y, z) = (side(a, b), side(b, c), side(c, a));
     (x > 0.0 && y > 0.0 && z > 0.0) || (x < 0.0 && y < 0.0 && z < 0.0)
-}
-
-/// Number of parts that a leaf of the tree has at most.
-const LEAF_PARTS: usize = 8;
-
-/// A tree of boxes over the parts.
-struct PartTree {
-    order: Vec<usize>,
-    bounds: Vec<Box3>,
-    boxes: Vec<PartBox>,
-}
-
-struct PartBox {
-    bounds: Box3,
-    range: Range<usize>,
-    /// The two boxes that it consists of; a leaf has none.
-    halves: Option<[usize; 2]>,
-}
-
-impl PartTree {
-    fn new(parts: &[BoundaryPart]) -> Self {
-        let bounds: Vec<Box3> = parts.iter().map(BoundaryPart::bounds).collect();
-        let mut tree = Self { order: (0..parts.len()).collect(), bounds, boxes: Vec::new() };
-        tree.grow(0..parts.len());
-        tree
-    }
-
-    fn grow(&mut self, range: Range<usize>) -> usize {
-        let inside = &mut self.order[range.clone()];
-        let bounds = inside.iter().fold(Box3::EMPTY, |all, &k| all.union(self.bounds[k]));
-        let number = self.boxes.len();
-        let middle = range.start + range.len() / 2;
-        let halved = range.len() > LEAF_PARTS;
-        if halved {
-            let extent = (bounds.high - bounds.low).to_array();
-            let axis = (1..3).fold(0, |best, k| if extent[k] > extent[best] { k } else { best });
-            let centre = |k: usize| self.bounds[k].centre().to_array()[axis];
-            inside.sort_by(|&a, &b| centre(a).total_cmp(&centre(b)));
-        }
-        self.boxes.push(PartBox { bounds, range: range.clone(), halves: None });
-        if halved {
-            let halves = [self.grow(range.start..middle), self.grow(middle..range.end)];
-            self.boxes[number].halves = Some(halves);
-        }
-        number
-    }
-
-    /// Collects the parts whose boxes meet this one.
-    fn meeting(&self, bounds: Box3, found: &mut Vec<usize>) {
-        let meets = |other: Box3| {
-            let ([a, b], [c, d]) = ([bounds.low, bounds.high], [other.low, other.high]);
-            let apart = a.x > d.x || c.x > b.x || a.y > d.y || c.y > b.y || a.z > d.z || c.z > b.z;
-            !apart
-        };
-        let mut open = vec![0];
-        while let Some(number) = open.pop() {
-            let of = &self.boxes[number];
-            if !meets(of.bounds) {
-                continue;
-            }
-            match of.halves {
-                Some(halves) => open.extend(halves),
-                None => {
-                    let inside = self.order[of.range.clone()].iter().copied();
-                    found.extend(inside.filter(|&k| meets(self.bounds[k])));
-                }
-            }
-        }
-    }
 }

@@ -38,6 +38,13 @@ pub enum JoinFault {
         /// The point of the other surface, or the one before it.
         other: MarchPlace,
     },
+    /// An edge is nearly one with others.
+    Apart {
+        /// The point of the edge that is farthest from them.
+        at: MarchPlace,
+        /// Its distance.
+        gap: f64,
+    },
     /// No choice of sides is consistent, as on a Moebius strip.
     NotOrientable {
         /// A point at which both sides meet.
@@ -102,6 +109,10 @@ impl fmt::Display for JoinFault {
             Self::Hanging { at, other } => write!(
                 f,
                 "the edge at {at} meets an edge or the inside at {other} without joining it point by point"
+            ),
+            Self::Apart { at, gap } => write!(
+                f,
+                "the edge at {at} is {gap:.3e} from other edges: they nearly meet, but are not joined"
             ),
             Self::NotOrientable { at } => {
                 write!(f, "the surfaces have no consistent side: both sides meet at {at}")

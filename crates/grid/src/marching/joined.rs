@@ -9,7 +9,8 @@ use super::surface_front::SurfaceFront;
 use super::topology::{FanFault, FrontTopology, PatchNodes, Pole, fans, polygon};
 use crate::{GridError, GridSide, SurfaceGrid, VolumeGrid};
 use moldloft_budget::Budget;
-use moldloft_num::{Box3, Real, Vec3};
+use moldloft_num::union_find::UnionFind;
+use moldloft_num::{Box3, BoxTree, Real, Vec3};
 use std::collections::{BTreeMap, HashMap, VecDeque};
 
 /// Conditions at the edges of surfaces that are not joined.
@@ -24,11 +25,15 @@ pub struct OpenFrontEdges {
 }
 
 impl OpenFrontEdges {
-    /// The same condition at all open edges of so many surfaces, and a tolerance of 1e-8.
+    /// The same condition at all open edges of this number of surfaces, and a tolerance of 1e-8.
     pub fn all(surfaces: usize, others: MarchBoundary) -> Self {
         Self { stated: vec![[None; 4]; surfaces], others, tolerance: 1e-8 }
     }
 }
+
+/// Distance of open edges of two surfaces, relative to the length between two points, up to which
+/// they are meant to be one.
+const NEARLY: f64 = 0.1;
 
 /// The blocks marched off surfaces whose common edges are found: points of edges nearer than the
 /// tolerance are one node, which has one line.
@@ -98,6 +103,7 @@ fn joined<T: Real>(
     let conditions = conditions(&patches, &pairs, edges, &is_hub)?;
     check_planes(&conditions, &wall, join.distance)?;
     check_hanging(surfaces, &patches, &conditions, &wall, join.distance)?;
+    check_gaps(&patches, &conditions, &wall)?;
     let condition =
         |[a, b]: [usize; 2]| conditions.get(&[a.min(b), a.max(b)]).copied().unwrap_or_default();
     let place = |node: usize| wall.places[node];
@@ -149,22 +155,21 @@ impl Joints {
             }
         }
         rim.sort_by(|a, b| a.1.x.total_cmp(&b.1.x).then(a.0.cmp(&b.0)));
-        let mut parent: Vec<usize> = (0..total).collect();
+        let mut joined = UnionFind::new(total);
         for (k, (a, p)) in rim.iter().enumerate() {
             for (b, q) in &rim[k + 1..] {
                 if q.x - p.x > distance {
                     break;
                 }
                 if p.distance(*q) <= distance {
-                    let (a, b) = (root(&mut parent, *a), root(&mut parent, *b));
-                    parent[a.max(b)] = a.min(b);
+                    joined.join(*a, *b);
                 }
             }
         }
         let mut numbers = vec![usize::MAX; total];
         let mut count = 0;
         let mut number = |k: usize| {
-            let first = root(&mut parent, k);
+            let first = joined.find(k);
             if numbers[first] == usize::MAX {
                 numbers[first] = count;
                 count += 1;
@@ -215,15 +220,6 @@ impl Joints {
         }
         Ok(is_hub)
     }
-}
-
-fn root(parent: &mut [usize], k: usize) -> usize {
-    let mut at = k;
-    while parent[at] != at {
-        parent[at] = parent[parent[at]];
-        at = parent[at];
-    }
-    at
 }
 
 /// The points of an edge of a patch, in ascending index.
@@ -398,6 +394,59 @@ fn check_hanging<T: Real>(
         }
     }
     Ok(())
+}
+
+/// Refuses an open edge that is nearly joined: all of its points are nearer to other open edges
+/// than [`NEARLY`] of the length between two of its points.
+fn check_gaps<T: Real>(
+    patches: &[PatchNodes],
+    conditions: &Conditions,
+    wall: &StartLayer<T>,
+) -> Result<(), JoinFault> {
+    let point = |node: usize| wall.points[node].re();
+    let mut open: Vec<(usize, [Vec3; 2])> = Vec::new();
+    let mut edges = Vec::new();
+    let sides = patches.iter().flat_map(|patch| GridSide::ALL.map(|side| (patch, side)));
+    for (k, (patch, side)) in sides.enumerate() {
+        let line = side_points(patch.size, side);
+        let nodes: Vec<usize> = line.iter().map(|[i, j]| patch.node(*i, *j)).collect();
+        let is_open = |p: &[usize]| conditions.contains_key(&[p[0].min(p[1]), p[0].max(p[1])]);
+        open.extend(
+            nodes.windows(2).filter(|p| is_open(p)).map(|p| (k, [point(p[0]), point(p[1])])),
+        );
+        if nodes.windows(2).all(is_open) {
+            edges.push((k, nodes));
+        }
+    }
+    let tree = BoxTree::new(open.iter().map(|(_, ends)| Box3::around(*ends)).collect());
+    let mut met = Vec::new();
+    for (k, nodes) in edges {
+        let steps = nodes.windows(2).map(|p| point(p[0]).distance(point(p[1])));
+        let near = NEARLY * steps.fold(f64::INFINITY, f64::min);
+        let mut worst = (0.0, nodes[0]);
+        let all_near = nodes.iter().all(|&node| {
+            let p = point(node);
+            met.clear();
+            tree.meeting(Box3::around([p]).grown(near), &mut met);
+            let others = met.iter().map(|&at| &open[at]).filter(|(other, _)| *other != k);
+            let gap = others.map(|(_, ends)| distance_from(p, *ends)).fold(f64::INFINITY, f64::min);
+            if gap > worst.0 {
+                worst = (gap, node);
+            }
+            gap <= near
+        });
+        if all_near && worst.0 > 0.0 {
+            return Err(JoinFault::Apart { at: wall.places[worst.1], gap: worst.0 });
+        }
+    }
+    Ok(())
+}
+
+/// The distance of a point from a straight edge.
+fn distance_from(p: Vec3, [from, to]: [Vec3; 2]) -> f64 {
+    let line = to - from;
+    let along = ((p - from).dot(line) / line.norm_sq()).clamp(0.0, 1.0);
+    p.distance(from + line * along)
 }
 
 /// The poles, with the nodes around them and the planes of symmetry that they are in.

@@ -12,7 +12,7 @@ use std::f64::consts::{FRAC_PI_4, PI};
 /// The six faces of a cube of edge 2, with equal angles between lines seen from its centre, mapped.
 fn cubed<T: Real>(n: usize, map: impl Fn(Vec3) -> Vec3<T>) -> Vec<SurfaceGrid<T>> {
     let face = |k: usize| {
-        let (axis, sign) = (k / 2, if k % 2 == 0 { 1.0 } else { -1.0 });
+        let (axis, sign) = (k / 2, if k.is_multiple_of(2) { 1.0 } else { -1.0 });
         SurfaceGrid::from_fn(n, n, |i, j| {
             let at = |k: usize| (FRAC_PI_4 * (2.0 * k as f64 / (n - 1) as f64 - 1.0)).tan();
             let mut p = [0.0; 3];
@@ -470,6 +470,16 @@ fn surfaces_that_are_no_front_are_refused_by_name() {
     let up = SurfaceGrid::from_fn(5, 5, |i, j| Vec3::of(1.0, j as f64 / 4.0, i as f64));
     let three = fault(&[left.clone(), right.clone(), up], &free(3));
     assert!(matches!(three, JoinFault::ThreeMeet { .. }), "{three}");
+    // A gap of a hundredth of a cell, and one of a fifth.
+    let gap = |by: f64| flat(5, 5, [1.0 + by, 0.0], [2.0, 1.0]);
+    let apart = fault(&[left.clone(), gap(0.0025)], &free(2));
+    assert!(matches!(apart, JoinFault::Apart { gap, .. } if (gap - 0.0025).abs() < 1e-12));
+    let slot = hyperbolic_surfaces(
+        &[left.clone(), gap(0.05)],
+        &free(2),
+        &Hyperbolic::new(vec![0.0, 0.01, 0.02]),
+    );
+    assert!(slot.is_ok(), "{slot:?}");
     // A band with half a turn.
     let band = SurfaceGrid::<f64>::from_fn(33, 5, |i, j| {
         let a = 2.0 * PI * i as f64 / 32.0;
