@@ -174,9 +174,10 @@ def limited(read: F) -> F:
     """
 
     @wraps(read)
-    def within(path: Any, *arguments: Any, **options: Any) -> Any:
+    def within(*arguments: Any, **options: Any) -> Any:
+        path = arguments[0] if arguments else options.get("path")
         with within_limits(f"cannot read `{path}`"):
-            return read(path, *arguments, **options)
+            return read(*arguments, **options)
 
     return cast(F, within)
 

@@ -151,7 +151,9 @@ def test_a_handle_moves_along_its_axis_or_plane(bench: Callable[..., Bench]) -> 
     begin = b.hand("project('C')")
 
     def pull(handle: str, dx: float, dy: float) -> tuple[float, ...]:
-        box = b.page.locator(f'[data-handle="{handle}"]').last.bounding_box()
+        found_handle = b.page.locator(f'[data-handle="{handle}"]').last
+        found_handle.wait_for()
+        box = found_handle.bounding_box()
         assert box
         x, y = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
         b.page.mouse.move(x, y)

@@ -3,7 +3,8 @@
 use super::crossing::{BoundaryPart, edges_cross, first_crossing, lowered};
 use super::front::{self, EDGE_SHARE, Front, MarchStep};
 use super::line::{BlockTridiagonal, LineEnd, Matrix, smoothed};
-use super::outcome::{MarchFailure, MarchPlace, Marched};
+use super::marched::Marched;
+use super::outcome::{MarchFailure, MarchPlace};
 use super::report::{self, Worst};
 use super::settings::{Hyperbolic, MarchBoundary};
 use crate::{GridError, SurfaceGrid};

@@ -2,7 +2,8 @@
 
 use super::fault::JoinFault;
 use super::front;
-use super::outcome::{MarchPlace, MarchedBlocks};
+use super::marched::MarchedBlocks;
+use super::outcome::MarchPlace;
 use super::report;
 use super::settings::{Hyperbolic, MarchBoundary};
 use super::surface_front::SurfaceFront;

@@ -15,6 +15,7 @@ mod fault;
 mod front;
 mod joined;
 mod line;
+mod marched;
 pub(crate) mod outcome;
 mod report;
 mod settings;
@@ -25,9 +26,8 @@ mod topology;
 pub use curve::{Support, hyperbolic_curve, hyperbolic_curve_until};
 pub use fault::JoinFault;
 pub use joined::{OpenFrontEdges, hyperbolic_surfaces, hyperbolic_surfaces_until};
-pub use outcome::{
-    FailureCause, MarchFailure, MarchPlace, MarchReport, Marched, MarchedBlocks, StopReason,
-};
+pub use marched::{Marched, MarchedBlocks};
+pub use outcome::{FailureCause, MarchFailure, MarchPlace, MarchReport, StopReason};
 pub(crate) use report::hexahedron;
 pub use settings::{Hyperbolic, MarchBoundary, Stop};
 pub use surface::{hyperbolic, hyperbolic_until};

@@ -1,26 +1,7 @@
-//! Result of a march: the report, and the reason of its end.
+//! The report of a march, and the reason of its end.
 
-use crate::{SurfaceGrid, VolumeGrid};
 use moldloft_num::Vec3;
 use std::fmt;
-
-/// A marched grid.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Marched<T> {
-    /// The layers, the wall first; off a curve one grid whose line s\[k,\] is layer k.
-    pub layers: Vec<SurfaceGrid<T>>,
-    /// Report of the march.
-    pub report: MarchReport,
-}
-
-/// Blocks marched off several surfaces.
-#[derive(Clone, Debug, PartialEq)]
-pub struct MarchedBlocks<T> {
-    /// One for each surface, which is its layer k = 1; points of faces that two blocks share are identical.
-    pub blocks: Vec<VolumeGrid<T>>,
-    /// Report of the march.
-    pub report: MarchReport,
-}
 
 /// A node or cell of a front.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -1,7 +1,8 @@
 //! Marching off one surface.
 
 use super::front;
-use super::outcome::{MarchPlace, Marched};
+use super::marched::Marched;
+use super::outcome::MarchPlace;
 use super::report;
 use super::settings::{Hyperbolic, MarchBoundary};
 use super::surface_front::SurfaceFront;
