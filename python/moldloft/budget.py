@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ctypes
+import inspect
 import math
 import os
 import re
@@ -179,6 +180,9 @@ def limited(read: F) -> F:
         with within_limits(f"cannot read `{path}`"):
             return read(*arguments, **options)
 
+    # A function with a `__wrapped__` has its arguments explained elsewhere.
+    del within.__wrapped__
+    within.__signature__ = inspect.signature(read)  # type: ignore[attr-defined]
     return cast(F, within)
 
 

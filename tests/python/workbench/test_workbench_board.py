@@ -223,6 +223,8 @@ def test_lines_are_duplicated_over_a_picture(board: Callable[..., BoardHand]) ->
     b.until(lambda: float(image.get_attribute("width") or 0) > 1.2 * width)
     b.page.get_by_role("button", name="remove the picture").click()
     assert not image.is_visible() and b.text() == text
+    # What the browser keeps is written after the click.
+    b.page.wait_for_timeout(500)
     b.reload()
     assert not image.is_visible()
     words = {"name": "scan.png", "mimeType": "image/png", "buffer": b"no picture"}
