@@ -39,7 +39,7 @@ fn normal(cell: &PolynomialCell<f64>, [u, v]: [f64; 2]) -> (Vec3, Vec3) {
 }
 
 fn fold_in(cell: &PolynomialCell<f64>, count: usize) -> Option<Vec3> {
-    // Denser at the edges and with these, where rulings cross first.
+    // Denser at the edges, which are included: rulings cross there first.
     let angle = |k: usize| std::f64::consts::FRAC_PI_2 * k as f64 / (count - 1) as f64;
     let steps: Vec<f64> = (0..count).map(|k| libm::pow(libm::sin(angle(k)), 2.0)).collect();
     let mut normals = Vec::with_capacity(count * count);

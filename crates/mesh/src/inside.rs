@@ -4,7 +4,7 @@
 //! of its places, or a part of an edge between two of the other's panels that it pierces, is inside.
 //! The winding number of a piece about a point is a sum of solid angles (van Oosterom and Strackee
 //! 1983): 1 inside a closed piece, 0 outside, one half on it. Panels are chords: points nearer to
-//! the other piece than the sagittas of both do not count.
+//! the other piece than the larger sagitta do not count.
 
 use crate::{Mesh, sagittas};
 use moldloft_num::union_find::UnionFind;
@@ -32,6 +32,10 @@ const PLACES: usize = 48;
 
 /// Number of parts of pierced edges that are tested.
 const PIERCED_PARTS: usize = 64;
+
+/// Depth to which chords of equal surfaces reach into each other, relative to the larger sagitta,
+/// which is estimated to a few per cent.
+const SAGITTA_MARGIN: f64 = 1.1;
 
 /// Distance of points that coincide, relative to the size of the model.
 const COINCIDENT: f64 = 1e-9;
@@ -66,7 +70,7 @@ pub fn inner_skins(mesh: &Mesh<f64>, mirrors: &[u8]) -> Vec<InnerSkin> {
     let mut found: Vec<InnerSkin> = Vec::new();
     for (i, piece) in pieces.iter().enumerate().filter(|(_, p)| p.image_of.is_none()) {
         for (j, around) in pieces.iter().enumerate().filter(|&(j, _)| j != i) {
-            let near = COINCIDENT * size + 2.0 * (piece.sagitta + around.sagitta);
+            let near = COINCIDENT * size + SAGITTA_MARGIN * piece.sagitta.max(around.sagitta);
             let Some(at) = piece.reach_into(around, near) else { continue };
             let cavity = piece.is_cavity_of(around);
             let (patch, around) = (piece.patch, pieces[around.image_of.unwrap_or(j)].patch);

@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 import moldloft
+
+SOAK = bool(os.environ.get("MOLDLOFT_SOAK"))
 
 # Two closed floats; where the second is short, a point of it is on nothing.
 FLOATS = """
@@ -95,3 +99,20 @@ def test_a_submerged_body_is_stable_by_its_centre_of_buoyancy() -> None:
     low, high = (m.hydrostatics(cg=(0, 0, z), density=1.0) for z in (-2.5, -1.8))
     assert low.gmt == pytest.approx(0.5) and low.gml == pytest.approx(0.5) and low.stable
     assert high.gmt == pytest.approx(-0.2) and high.stable is False
+
+
+def test_balls_overlap_where_they_are_nearer_than_their_radii() -> None:
+    rng = np.random.default_rng(5)
+    for _ in range(300 if SOAK else 20):
+        apart, r = rng.uniform(0.2, 3.2), rng.uniform(0.3, 1.4)
+        gap = apart - 1 - r
+        # Shallower overlaps are within the distance of the panels from the balls.
+        if -0.05 < gap < 0:
+            continue
+        m = moldloft.loads(f"""
+AbsPoint A(0, 0, -1); AbsPoint B(0, 0, 1); Line ax(A, B);
+Arc half(A, {{1, 0, 0}}, B, type = 1); RevSurf ball(half, ax, 0, 2*PI);
+AbsPoint C({apart}, 0, -{r}); AbsPoint D({apart}, 0, {r}); Line ay(C, D);
+Arc rim(C, {{{apart + r}, 0, 0}}, D, type = 1); RevSurf other(rim, ay, 0, 2*PI);
+""")
+        assert bool(m.inner_skins()) == (gap < 0), (apart, r)
