@@ -495,7 +495,7 @@ export class Desk {
     badge.setAttribute('aria-label', words)
   }
 
-  /** What can be opened; over what is open, whose history stays, until another is chosen. */
+  /** The list of things to open; it covers an open one, with its history, until another is chosen. */
   private starting(on = this.session === null): void {
     this.start.hidden = !on
     if (!on) return

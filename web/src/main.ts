@@ -466,7 +466,7 @@ const REST = 150
 let lastMove = 0
 addEventListener('pointermove', () => (lastMove = performance.now()), true)
 
-/** What waits until nothing has come, and no hand has moved what it holds, for a moment. */
+/** Delays a run until for a moment nothing has come and no hand has moved. */
 function atRest(run: () => void): () => void {
   let timer = 0
   const moving = () => (held || hands.busy) && performance.now() - lastMove < REST
@@ -495,7 +495,7 @@ function afloat(on: boolean): void {
 const askFloating = atRest(() => floating.push(undefined))
 
 // Watched numbers follow the scene: at once while they are quick and no hand holds anything, else when the hand rests. A
-// move ends what is computed of them.
+// move ends their computation.
 let took = 0
 const measuring = new Newest<void>(async () => {
   const from = performance.now()
