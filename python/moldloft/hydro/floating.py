@@ -119,10 +119,12 @@ class Floating:
         ... RuledSurf bottom(ab, cd, tags = "flat"); RuledSurf wall(ab, ef);
         ... ''')
         >>> m.partial = True
-        >>> m.wetted_areas()
-        {'bottom': 4.0, 'wall': 8.0}
-        >>> m.wetted_areas(by="tag")
-        {'flat': 4.0}
+        >>> for name, area in m.wetted_areas().items():
+        ...     print(f"{name} {area:.6f}")
+        bottom 4.000000
+        wall 8.000000
+        >>> round(m.wetted_areas(by="tag")["flat"], 6)
+        4.0
         """
         if by not in ("object", "tag"):
             raise Error(f'`by` is "object" or "tag", not {by!r}')

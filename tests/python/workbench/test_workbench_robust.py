@@ -305,7 +305,7 @@ def test_a_page_finds_the_next_server_and_joins_both_texts(bench: Callable[..., 
     b.path.write_text("# another program\n" + saved, encoding="utf-8")
     b.serve()
     b.connected()
-    assert b.text() == "# another program\n" + saved + "# alone\n"
+    b.until(lambda: b.text() == "# another program\n" + saved + "# alone\n")
     b.until(lambda: kept(b) == b.text())
     # What was done before and since is taken back, what the other program did is not.
     b.page.keyboard.press("Control+z")
