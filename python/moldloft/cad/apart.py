@@ -1,7 +1,7 @@
 """CAD files read in a process of their own, bounded in time and memory.
 
-OCCT can end the process over a damaged file. The faces that it ends over are then found by halves,
-named, and left out; of IGES files it is an error.
+OCCT and rhino3dm can end the process over a damaged file. The faces of a STEP file that OCCT ends
+over are then found by halves, named, and left out; other files are refused.
 """
 
 from __future__ import annotations
@@ -10,6 +10,7 @@ import atexit
 import math
 import os
 import sys
+import tempfile
 import threading
 import time
 from pathlib import Path
@@ -18,15 +19,17 @@ from typing import Any
 import numpy as np
 
 from moldloft.budget import limits
-from moldloft.cad import check_occt
+from moldloft.cad import check_occt, needed
 from moldloft.cad.faces import Imported, ImportedFace, ImportedSide
 from moldloft.cad.occt import cad_bytes, of_part
 from moldloft.cad.part21 import StepText
+from moldloft.cad.rhino_reading import meshes
 from moldloft.child_process import ChildProcess, ProcessEnd, bounded, serve
 from moldloft.errors import Error, FileError
 from moldloft.shapes.nurbs import Nurbs
+from moldloft.storage import read_bytes
 
-__all__ = ["read"]
+__all__ = ["read", "read_meshes"]
 
 SECONDS, SECONDS_A_MEGABYTE = 10.0, 30.0
 """Processor time for one file, and for each megabyte of it, unless the limits of this process state
@@ -82,6 +85,34 @@ def read(path: Path, metres: float) -> Imported:
         f"{len(parts)} parts, which are not joined; left out: {few or 'none'}",
     )
     return found
+
+
+def read_meshes(path: Path) -> tuple[Any, Any, list[tuple[str, int, int]], float | None]:
+    """The visible meshes of a 3DM file, as :func:`moldloft.cad.rhino_reading.meshes` gives them.
+
+    Parameters
+    ----------
+    path
+        The file.
+
+    Raises
+    ------
+    FileError
+        If it is not a 3DM file, or ends the process that reads it.
+    """
+    needed("rhino3dm", "rhino3dm", "reading 3DM")
+    if not sys.executable:
+        return meshes(read_bytes(path))
+    with tempfile.TemporaryDirectory() as folder:
+        answer = _worker.ask(_request(path, _Spending(path)) | {"arrays_in": folder})
+        if isinstance(answer, str):
+            raise FileError(answer)
+        _check(answer, path)
+        if "fault" in answer:
+            raise FileError(f"rhino3dm cannot read the file ({answer['fault']})")
+        points, corners = (np.load(Path(folder) / f"{name}.npy") for name in _ARRAYS)
+    groups = [(name, first, end) for name, first, end in answer["groups"]]
+    return points, corners, groups, answer["metres"]
 
 
 def _by_halves(
@@ -169,12 +200,13 @@ class _Worker:
         return process
 
     def _said(self, end: ProcessEnd, request: dict[str, Any]) -> str:
+        reader = "rhino3dm" if request["path"].lower().endswith(".3dm") else "OCCT"
         if end.late:
-            return f"OCCT was ended: it took longer than {request['clock']:g} s"
+            return f"{reader} was ended: it took longer than {request['clock']:g} s"
         if end.by == "SIGXCPU":
             allowed = request["seconds"]
-            return f"OCCT was ended: it took longer than {allowed:g} s of processor time"
-        return f"OCCT ended over the file ({end.by})"
+            return f"{reader} was ended: it took longer than {allowed:g} s of processor time"
+        return f"{reader} ended over the file ({end.by})"
 
 
 _worker = _Worker()
@@ -185,27 +217,31 @@ def _asked(
 ) -> Imported | str:
     """Data of some or all faces read by another process, or the cause of its end."""
     before = _children()
-    request = {
+    answer = _worker.ask(_request(path, spending) | {"metres": metres, "faces": numbers})
+    if isinstance(answer, str):
+        # What ended over the file is known by its time; a part that took all leaves none.
+        ended = " ended over the file" in answer
+        spending.left -= max(_LEAST, _children() - before) if ended else spending.left
+        return answer
+    spending.left -= answer["seconds"]
+    _check(answer, path)
+    if "fault" in answer:
+        return f"OCCT cannot read the file ({answer['fault']})"
+    return _imported(answer, metres)
+
+
+def _request(path: Path, spending: _Spending) -> dict[str, Any]:
+    return {
         "path": str(path.absolute()),
-        "called": str(path),
-        "metres": metres,
-        "faces": numbers,
         "memory": limits().memory,
         "seconds": spending.left,
         "clock": spending.clock,
     }
-    answer = _worker.ask(request)
-    if isinstance(answer, str):
-        # What ended over the file is known by its time; a part that took all leaves none.
-        ended = answer.startswith("OCCT ended")
-        spending.left -= max(_LEAST, _children() - before) if ended else spending.left
-        return answer
-    spending.left -= answer["seconds"]
+
+
+def _check(answer: dict[str, Any], path: Path) -> None:
     if "refused" in answer:
-        raise FileError(answer["refused"].replace(request["path"], request["called"]))
-    if "fault" in answer:
-        return f"OCCT cannot read the file ({answer['fault']})"
-    return _imported(answer, metres)
+        raise FileError(answer["refused"].replace(str(path.absolute()), str(path)))
 
 
 def _children() -> float:
@@ -253,6 +289,8 @@ def _imported(answer: dict[str, Any], metres: float) -> Imported:
 def _answer(request: dict[str, Any]) -> dict[str, Any]:
     """Data of the answer, mostly numbers."""
     try:
+        if "arrays_in" in request:
+            return _meshes(request)
         found = of_part(Path(request["path"]), request["metres"], request["faces"])
     except Error as error:
         return {"refused": str(error)}
@@ -275,6 +313,17 @@ def _answer(request: dict[str, Any]) -> dict[str, Any]:
     ]
     curves = {name: _sent(curve) for name, curve in found.curves.items()}
     return {"faces": faces, "curves": curves, "remarks": found.remarks}
+
+
+_ARRAYS = ("points", "corners")
+"""Files of the arrays that a process leaves for the one that asked."""
+
+
+def _meshes(request: dict[str, Any]) -> dict[str, Any]:
+    points, corners, groups, metres = meshes(read_bytes(Path(request["path"])))
+    for name, array in zip(_ARRAYS, (points, corners), strict=True):
+        np.save(Path(request["arrays_in"]) / f"{name}.npy", array)
+    return {"groups": groups, "metres": metres}
 
 
 def _timed(request: dict[str, Any]) -> dict[str, Any]:

@@ -188,7 +188,7 @@ def _read(path: Path, ending: str, data: bytes) -> tuple[Overlay, float | None]:
         from moldloft.overlays.threemf import parse as parse_threemf
 
         return parse_threemf(path.name, data)
-    from moldloft.cad.rhino_reading import meshes
+    from moldloft.cad.apart import read_meshes
     from moldloft.overlays import polydata
     from moldloft.overlays.meshes import mesh, panels, surface
 
@@ -197,7 +197,7 @@ def _read(path: Path, ending: str, data: bytes) -> tuple[Overlay, float | None]:
     if ending == "vtk" and polydata.is_legacy(data):
         return polydata.legacy(path.name, data), None
     if ending in _RHINO:
-        points, faces, groups, metres = meshes(data)
+        points, faces, groups, metres = read_meshes(path)
         return Overlay(path.name, points, faces, tuple(groups)), metres
     if ending in _SURFACES:
         return surface(path.name, ending, data), None

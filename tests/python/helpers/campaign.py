@@ -342,8 +342,9 @@ def readers(world: World) -> dict[str, Reader]:
 
 
 def binary_files(world: World) -> Iterator[tuple[str, list[bytes], Callable[[Path], object]]]:
-    """Name, seeds and reader of fonts, where their package is installed."""
+    """Name, seeds and reader of fonts and of meshes of Rhino, where their packages are installed."""
     import moldloft
+    from moldloft import overlays
 
     try:
         from small_font import small_font
@@ -355,6 +356,18 @@ def binary_files(world: World) -> Iterator[tuple[str, list[bytes], Callable[[Pat
             small_font(world.folder / "seed.ttf", cubic).read_bytes() for cubic in (False, True)
         ]
         yield "a.ttf", fonts, lambda _: moldloft.load(program)
+    try:
+        import rhino3dm
+    except ImportError:
+        return
+    file, mesh = rhino3dm.File3dm(), rhino3dm.Mesh()
+    for x, y in ((0, 0), (1, 0), (1, 1), (0, 1)):
+        mesh.Vertices.Add(x, y, 0)
+    mesh.Faces.AddFace(0, 1, 2, 3)
+    file.Objects.AddMesh(mesh)
+    seed = world.folder / "seed.3dm"
+    file.Write(str(seed), 6)
+    yield "a.3dm", [seed.read_bytes()], overlays.read
 
 
 def values(rng: random.Random) -> Any:
