@@ -426,3 +426,20 @@ def test_solid_where_it_should_be() -> None:
     inside("bracket", "bracket", {(35, 30, 4): True, (4, 30, 40): True, (49, 15, 4): False})
     inside("bracket", "bracket", {(9, 30, 9): True, (15, 30, 19): False})
     inside("helmet", "helmet", {(0, 95, 10): True, (0, 0, 0): False, (-130, 0, 10): True})
+
+
+@pytest.mark.parametrize("seed", range(20 if SOAK else 3))
+def test_the_bulb_of_the_tug_grows_by_its_section(seed: int) -> None:
+    m = model("tug")
+    rng = np.random.default_rng(seed)
+    for p in m.params.values():
+        m[p.name] = float(rng.uniform(p.low, p.high))
+    m["bulb_nose"] = float(rng.uniform(-2, -1.2))
+    h = m.hydrostatics(by=["bulb_nose"])
+    section = math.pi * m["bulb_radius"] ** 2
+    assert h.derivatives["volume"]["bulb_nose"] == pytest.approx(-section, rel=1e-7)
+    ahead = h.volume
+    m["bulb_nose"] -= 0.1
+    assert m.hydrostatics().volume - ahead == pytest.approx(0.1 * section, rel=1e-4)
+    # Parts of the hull and the bulb's skin, of which a longer bulb has more.
+    assert sum(m.wetted_areas().values()) == pytest.approx(m.hydrostatics().wetted_area, rel=1e-6)
