@@ -37,7 +37,7 @@ __all__ = ["Hub", "Tab"]
 #: Requests of which only the newest of a tab counts.
 NEWEST = {
     "set", "solve_for", "drag_to", "sync", "hover", "complete", "inspect", "field",
-    "combs", "deviation", "measure", "blocks",
+    "combs", "deviation", "measure", "blocks", "settle",
 }  # fmt: skip
 
 #: What a page may ask of the engine.
@@ -50,11 +50,14 @@ ASKED = NEWEST | {
 
 #: After these other tabs have something new, too.
 CHANGING = {
-    "set", "solve_for", "drag_to", "commit", "reset", "write", "drag_end", "show",
+    "set", "solve_for", "drag_to", "settle", "commit", "reset", "write", "drag_end", "show",
     "add", "delete", "duplicate", "rename_object", "reorder", "text", "text_beside",
 }  # fmt: skip
 
-#: Moves of a hand: numbers of the shape before them are no longer asked for.
+#: Results for a hand that rests.
+RESULTS = {"measure", "settle"}
+
+#: Moves of a hand: results for the shape before them are no longer asked for.
 MOVES = {"set", "solve_for", "drag_begin", "drag_to"}
 
 #: Requests about a text, which name its file; that of the model has no name.
@@ -63,7 +66,7 @@ OF_TEXTS = {"push", "pull", "save", "revert"}
 #: Jobs of the hub itself: no page hears their answers but for what has changed.
 OWN = {"text", "text_beside"}
 
-MOST_TABS = 32
+MOST_TABS = 64
 #: Bytes of a frame that says no more than what is wrong.
 LONGEST_FAULT = 2000
 #: Requests of one page that wait for the engine.
@@ -190,6 +193,11 @@ class Hub:
         before
             The number that the page had in its last connection, if it had one.
         """
+        if len(self.tabs) >= MOST_TABS:
+            # A page that does not read makes room for one that does.
+            behind = next((tab for tab in self.tabs.values() if tab.outbox.behind), None)
+            if behind is not None:
+                behind.outbox.give_up(f"{MOST_TABS} pages are open, and it is behind")
         if len(self.tabs) >= MOST_TABS:
             raise Error(f"{MOST_TABS} pages are open: close one first")
         self._count += 1
@@ -400,7 +408,7 @@ class Hub:
     def _ask(self, tab: Tab, kind: str, message: dict[str, Any]) -> None:
         request = {**message, "tab": tab.number}
         if kind in MOVES:
-            self._give_up_measures()
+            self._give_up_results()
         if kind in NEWEST:
             for job in self._jobs:
                 if job.kind == kind and job.tab == tab.number:
@@ -412,12 +420,12 @@ class Hub:
                     return
         self._queue(_Job(kind, tab.number, request))
 
-    def _give_up_measures(self) -> None:
-        """Numbers that wait or are computed give way to a move of a hand."""
-        for job in [job for job in self._jobs if job.kind == "measure"]:
+    def _give_up_results(self) -> None:
+        """Numbers and exact bodies that wait or are computed give way to a move of a hand."""
+        for job in [job for job in self._jobs if job.kind in RESULTS]:
             self._jobs.remove(job)
             self._superseded(job)
-        if self._running == "measure" and not self._given_up:
+        if self._running in RESULTS and not self._given_up:
             self._given_up = True
             self.engine.cancel()
 

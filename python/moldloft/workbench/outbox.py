@@ -18,6 +18,10 @@ MOST_BYTES = 8 << 20
 PATIENCE, BYTES_PER_SECOND = 10.0, 1 << 20
 #: Seconds after which a page that does not take a message may have no more than MOST_BYTES waiting.
 STALLED = 1.0
+#: Bytes of a waiting message besides its text.
+OVERHEAD = 500
+#: Bytes that wait beyond which a page is not listened to: it asks for more than it takes.
+DEAF = 2 << 20
 #: Bytes under way or waiting, or messages that wait, beyond which a page is behind: it is sent the
 #: newest state later.
 BEHIND, BEHIND_MESSAGES = 1 << 20, 8
@@ -67,15 +71,21 @@ class Outbox:
         self._since = 0.0
         self._task: asyncio.Task[None] | None = None
         self._closed = False
+        self._listening = asyncio.Event()
+        self._listening.set()
 
     @property
     def behind(self) -> bool:
         """True while more than :data:`BEHIND` bytes, or :data:`BEHIND_MESSAGES`, are queued."""
         return self._bytes + self._under_way > BEHIND or len(self._waiting) > BEHIND_MESSAGES
 
+    async def heard(self) -> None:
+        """Return when the page may be listened to: fewer than :data:`DEAF` bytes wait for it."""
+        await self._listening.wait()
+
     def put(self, data: str | bytes) -> None:
         """Queue a message."""
-        self._add(_Message(lambda: data, len(data), ""))
+        self._add(_Message(lambda: data, len(data) + OVERHEAD, ""))
 
     def put_newest(self, key: str, make: Callable[[], str]) -> None:
         """Queue a message that ``make`` builds at sending, unless one is queued under the key."""
@@ -90,6 +100,7 @@ class Outbox:
     def close(self) -> None:
         """Clear the queue; nothing more is sent."""
         self._closed = True
+        self._listening.set()
         self._waiting.clear()
         self._newest.clear()
         self._bytes = 0
@@ -101,11 +112,13 @@ class Outbox:
             return
         self._waiting.append(message)
         self._bytes += message.size
+        if self._bytes > DEAF:
+            self._listening.clear()
         if self._task is None or self._task.done():
             self._since = time.monotonic()
             self._task = asyncio.ensure_future(self._run())
         elif self._bytes > MOST_BYTES and time.monotonic() - self._since > STALLED:
-            self._give_up(f"{MOST_BYTES >> 20} MB waited for it")
+            self.give_up(f"{MOST_BYTES >> 20} MB waited for it")
 
     async def _run(self) -> None:
         while self._waiting and not self._closed:
@@ -113,6 +126,8 @@ class Outbox:
             message = self._waiting.popleft()
             self._newest.pop(message.key, None)
             self._bytes -= message.size
+            if self._bytes <= DEAF:
+                self._listening.set()
             data = message.make()
             self._under_way, self._since = len(data), time.monotonic()
             seconds = self._patience + (self._last + len(data)) / BYTES_PER_SECOND
@@ -120,7 +135,7 @@ class Outbox:
             try:
                 await asyncio.wait_for(self._send(data), seconds)
             except TimeoutError:
-                self._give_up(f"it took nothing for {seconds:.0f} s")
+                self.give_up(f"it took nothing for {seconds:.0f} s")
                 return
             except Exception:
                 # The page has gone, as its own reader notices.
@@ -130,6 +145,7 @@ class Outbox:
             if was and not self.behind:
                 self._room()
 
-    def _give_up(self, why: str) -> None:
+    def give_up(self, why: str) -> None:
+        """Disconnect the page, for a reason that it is told when it is back."""
         self.close()
         self._drop(why)

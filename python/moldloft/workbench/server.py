@@ -306,6 +306,7 @@ class Server:
         """Receives messages of a page until it disconnects."""
         tab.outbox.put(json.dumps(self.hub.hello(tab)))
         while (received := await socket.receive())["type"] != "websocket.disconnect":
+            await tab.outbox.heard()
             try:
                 message = json.loads(received.get("text") or "")
             except (ValueError, RecursionError) as error:

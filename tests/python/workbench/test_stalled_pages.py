@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import contextlib
 import functools
 import json
 import os
@@ -12,6 +13,8 @@ import signal
 import socket
 import subprocess
 import sys
+import threading
+import time
 import urllib.request
 from collections.abc import Awaitable, Callable
 from pathlib import Path
@@ -19,6 +22,7 @@ from typing import Any
 
 import pytest
 
+from moldloft.errors import Error
 from moldloft.workbench import hub as hub_module
 from moldloft.workbench.frames import head_of
 from moldloft.workbench.hub import Hub
@@ -176,6 +180,30 @@ def test_no_page_waits_for_another(
     played(play)
 
 
+def test_pages_that_are_behind_make_room(
+    model_file: Callable[..., Path], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(hub_module, "MOST_TABS", 3)
+    monkeypatch.setattr(hub_module, "Outbox", functools.partial(Outbox, patience=3600))
+
+    async def play() -> None:
+        hub = Hub(model_file(LINE))
+        hub.start()
+        try:
+            stalled = [hub.join(never) for _ in range(3)]
+            with pytest.raises(Error, match="3 pages are open"):
+                hub.join(never)
+            stalled[1].outbox.put(b"z" * (BEHIND + 1))
+            new = hub.join(never)
+            assert set(hub.tabs) == {stalled[0].number, stalled[2].number, new.number}
+            with pytest.raises(Error, match="3 pages are open"):
+                hub.join(never)
+        finally:
+            await hub.stop()
+
+    played(play)
+
+
 def test_a_page_that_was_dropped_is_told(
     model_file: Callable[..., Path], monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -271,11 +299,87 @@ def stalled_page(port: int, cookie: str) -> socket.socket:
     return connection
 
 
+def joined_page(port: int, cookie: str) -> Any:
+    """A page that reads what it is sent."""
+    client = pytest.importorskip("websockets.sync.client")
+    return client.connect(
+        f"ws://127.0.0.1:{port}/ws",
+        additional_headers={"Cookie": cookie},
+        origin=f"http://127.0.0.1:{port}",
+        max_size=None,
+    )
+
+
+def answered(page: Any, number: int) -> dict[str, Any]:
+    """The answer to the request of a number."""
+    while True:
+        data = page.recv(timeout=60)
+        message = head_of(data) if isinstance(data, bytes) else json.loads(data)
+        if message.get("id") == number:
+            return dict(message)
+
+
+def memory_of(pid: int) -> int:
+    """Megabytes of a process and its children."""
+    own = int(Path(f"/proc/{pid}/status").read_text().split("VmRSS:")[1].split()[0]) // 1024
+    children = Path(f"/proc/{pid}/task/{pid}/children").read_text().split()
+    return own + sum(memory_of(int(child)) for child in children)
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="memory of a process from /proc")
+def test_many_stalled_pages_and_a_looping_one_cost_the_others_nothing(
+    model_file: Callable[..., Path],
+) -> None:
+    path = model_file(LINE, "many.sdl")
+    process, port, cookie = served(path)
+    stalled = [stalled_page(port, cookie) for _ in range(32)]
+    stop = threading.Event()
+
+    def loop() -> None:
+        number = 0
+        while not stop.is_set():
+            # It is dropped when it is too far behind, and joins again.
+            with contextlib.suppress(Exception), joined_page(port, cookie) as page:
+                while not stop.is_set():
+                    number += 1
+                    kind = ("hover", "sync", "measure")[number % 3]
+                    page.send(json.dumps({"kind": kind, "id": number, "offset": 3}))
+
+    looping = threading.Thread(target=loop)
+    looping.start()
+    text, waits = LINE, []
+    try:
+        with joined_page(port, cookie) as page:
+            for k in range(60):
+                line = f"# edit {k} {'z' * 30_000}"
+                update = {"changes": [len(text), [0, "", line]], "clientID": "p"}
+                began = time.perf_counter()
+                page.send(
+                    json.dumps({"kind": "push", "id": k + 1, "version": k, "updates": [update]})
+                )
+                assert answered(page, k + 1)["ok"]
+                waits.append(time.perf_counter() - began)
+                text += f"\n{line}"
+            page.send(json.dumps({"kind": "save", "id": 1000}))
+            assert answered(page, 1000)["kind"] == "saved"
+            assert path.read_text() == text
+            assert memory_of(process.pid) < 300
+    finally:
+        stop.set()
+        process.send_signal(signal.SIGKILL)
+        process.wait()
+        process.stdout.close()  # type: ignore[union-attr]
+        looping.join(timeout=60)
+        for connection in stalled:
+            connection.close()
+    if SOAK:
+        assert sorted(waits)[int(0.95 * len(waits))] < 0.1
+
+
 @pytest.mark.skipif(os.name == "nt", reason="signals")
 def test_nothing_is_lost_beside_stalled_pages_when_the_server_is_killed(
     model_file: Callable[..., Path],
 ) -> None:
-    client = pytest.importorskip("websockets.sync.client")
     chance = random.Random(11)
     for round_ in range(200 if SOAK else 1):
         path = model_file(LINE, f"killed{round_}.sdl")
@@ -283,20 +387,7 @@ def test_nothing_is_lost_beside_stalled_pages_when_the_server_is_killed(
         stalled = [stalled_page(port, cookie) for _ in range(4)]
         accepted = LINE
         try:
-            with client.connect(
-                f"ws://127.0.0.1:{port}/ws",
-                additional_headers={"Cookie": cookie},
-                origin=f"http://127.0.0.1:{port}",
-                max_size=None,
-            ) as page:
-
-                def answer(number: int, page: Any = page) -> dict[str, Any]:
-                    while True:
-                        data = page.recv(timeout=60)
-                        message = head_of(data) if isinstance(data, bytes) else json.loads(data)
-                        if message.get("id") == number:
-                            return dict(message)
-
+            with joined_page(port, cookie) as page:
                 # Requests that are none are answered, and the connection stays.
                 for bad in ("nonsense", "[" * 10_000, "7", b"\0"):
                     page.send(bad)
@@ -307,16 +398,16 @@ def test_nothing_is_lost_beside_stalled_pages_when_the_server_is_killed(
                     update = {"changes": [len(accepted), [0, "", line]], "clientID": "p"}
                     request = {"kind": "push", "id": k + 1, "version": k, "updates": [update]}
                     page.send(json.dumps(request))
-                    assert answer(k + 1)["ok"]
+                    assert answered(page, k + 1)["ok"]
                     accepted += f"\n{line}"
                 if not SOAK:
                     page.send(json.dumps({"kind": "save", "id": 1000}))
-                    assert answer(1000)["kind"] == "saved"
+                    assert answered(page, 1000)["kind"] == "saved"
                     assert path.read_text() == accepted
                     page.send(json.dumps({"kind": "push", "id": 2000, "version": count, "updates": [
                         {"changes": [len(accepted), [0, "", "# last"]], "clientID": "p"}
                     ]}))  # fmt: skip
-                    assert answer(2000)["ok"]
+                    assert answered(page, 2000)["ok"]
                     accepted += "\n# last"
         finally:
             process.send_signal(signal.SIGKILL)
