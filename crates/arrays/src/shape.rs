@@ -95,7 +95,7 @@ impl<T: Scalar> Build<T> for Concatenation<T> {
     fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let place = |k: usize| move |fault: CallError| fault.in_item(k).in_field(Self::PARTS);
         if matches!(self.parts[0], Value::Numbers(_)) {
-            let mut all: Vec<T> = Vec::new();
+            let mut all: Vec<T> = Vec::with_capacity(self.item_count());
             for (k, part) in self.parts.iter().enumerate() {
                 let Items::Numbers(row) = Items::from_value(part).map_err(place(k))? else {
                     let message = format!(
@@ -116,7 +116,7 @@ impl<T: Scalar> Build<T> for Concatenation<T> {
             }
             return Ok(farray(all));
         }
-        let mut all: Vec<Vec3<T>> = Vec::new();
+        let mut all: Vec<Vec3<T>> = Vec::with_capacity(self.item_count());
         for (k, part) in self.parts.iter().enumerate() {
             let Points(row) = Points::from_value(part).map_err(place(k))?;
             let first = row.first().map_or(Vec3::zero(), |p| p.re());
@@ -126,6 +126,18 @@ impl<T: Scalar> Build<T> for Concatenation<T> {
             all.extend(row.into_iter().skip(usize::from(skip)));
         }
         Ok(vectors(ArrayShape::Row(all.len()), all))
+    }
+}
+
+impl<T: Scalar> Concatenation<T> {
+    /// Maximum number of items of the result.
+    fn item_count(&self) -> usize {
+        let items = |part: &Value<T>| match part {
+            Value::Numbers(a) => a.items.len(),
+            Value::Vectors(a) => a.shape.count(),
+            _ => 1,
+        };
+        self.parts.iter().map(items).sum()
     }
 }
 

@@ -41,6 +41,12 @@ fn count(bytes: i64) {
     });
 }
 
+/// Memory that the system's allocator takes for a block: its size, a header and rounding, as glibc
+/// has them; for blocks of a few words that is a fifth and more.
+fn taken(size: usize) -> i64 {
+    ((size as i64 + 8 + 15) & !15).max(32)
+}
+
 /// Adds the counter of this thread to the sum; to be called at the end of a thread.
 pub fn settle() {
     let _ = OWN.try_with(|own| HELD.fetch_add(own.replace(0), Ordering::Relaxed));
@@ -129,12 +135,12 @@ fn reserve() {
             return;
         }
         // The reserve does not count as used.
-        count(-(RESERVE as i64));
+        count(-taken(RESERVE));
         if KEPT_BACK
             .compare_exchange(null_mut(), block, Ordering::AcqRel, Ordering::Acquire)
             .is_err()
         {
-            count(RESERVE as i64);
+            count(taken(RESERVE));
             // SAFETY: it was allocated above.
             unsafe { std::alloc::dealloc(block, RESERVED) };
         }
@@ -217,26 +223,26 @@ unsafe impl<A: GlobalAlloc> GlobalAlloc for Counting<A> {
     #[inline]
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
         // SAFETY: the caller keeps the contract of `GlobalAlloc`.
-        self.counted(layout.size(), layout.size() as i64, || unsafe { self.0.alloc(layout) })
+        self.counted(layout.size(), taken(layout.size()), || unsafe { self.0.alloc(layout) })
     }
 
     #[inline]
     unsafe fn alloc_zeroed(&self, layout: Layout) -> *mut u8 {
         // SAFETY: as above.
-        self.counted(layout.size(), layout.size() as i64, || unsafe { self.0.alloc_zeroed(layout) })
+        self.counted(layout.size(), taken(layout.size()), || unsafe { self.0.alloc_zeroed(layout) })
     }
 
     #[inline]
     unsafe fn dealloc(&self, block: *mut u8, layout: Layout) {
         // SAFETY: as above.
         unsafe { self.0.dealloc(block, layout) };
-        count(-(layout.size() as i64));
+        count(-taken(layout.size()));
     }
 
     #[inline]
     unsafe fn realloc(&self, block: *mut u8, layout: Layout, size: usize) -> *mut u8 {
         // SAFETY: as above; a block that cannot be reallocated is unchanged.
-        let more = size as i64 - layout.size() as i64;
+        let more = taken(size) - taken(layout.size());
         self.counted(size, more, || unsafe { self.0.realloc(block, layout, size) })
     }
 }

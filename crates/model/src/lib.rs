@@ -16,4 +16,5 @@ mod object;
 mod sweep;
 
 pub use graph::{Applied, DEEPEST_NESTING, Declaration, Extent, Graph, Run};
+pub use memo::number_count;
 pub use object::{Failure, Object, State};

@@ -64,7 +64,7 @@ impl<T: Scalar> Memo<T> {
             context.remark(remark.id, remark.message.clone(), remark.help);
         }
         let value = called?;
-        let numbers = count(&value) + args.iter().map(count).sum::<usize>();
+        let numbers = number_count(&value) + args.iter().map(number_count).sum::<usize>();
         let row = row.clone();
         bucket.push(Remembered {
             row,
@@ -108,12 +108,12 @@ impl<T: Scalar> Memo<T> {
 }
 
 /// The numbers that a value holds.
-fn count<T: Scalar>(value: &Value<T>) -> usize {
+pub fn number_count<T: Scalar>(value: &Value<T>) -> usize {
     match value {
         Value::Numbers(a) => a.items.len() * T::PARTS,
         Value::Vectors(a) => a.shape.count() * 3 * T::PARTS,
-        Value::List(items) | Value::Block(items) => items.iter().map(count).sum(),
-        Value::Record(record) => record.values.iter().map(count).sum(),
+        Value::List(items) | Value::Block(items) => items.iter().map(number_count).sum(),
+        Value::Record(record) => record.values.iter().map(number_count).sum(),
         _ => 1,
     }
 }

@@ -335,3 +335,48 @@ def harmless(tmp_path: Path, words: list[str]) -> int:
         assert "error[" in said or "error: " in said, said[-2000:]
     assert peak < (REFUSED if child.returncode else DONE), f"{peak} MB\n{said[-500:]}"
     return peak
+
+
+#: Values that double at each turn, each found in another place of the program.
+DOUBLING = {
+    "joined": "farray a = uniform(0, 1, 1000); for (i = 1:60) a = join(a, a);",
+    "joined points": "curve a = points({0, 0, 0}, {1, 0, 0}); for (i = 1:60) a = join(a, translate(a, {i, 0, 0}));",
+    "moved": "set s = set(sphere({0, 0, 0}, 1)); for (i = 1:60) s = s | translated(s, {i/10, 0, 0});",
+    "repeated": "set s = set(sphere({0, 0, 0}, 1)); for (i = 1:60) s = repeated(s, {i, 0, 0}, 10);",
+    "twisted": "set s = set(sphere({0, 0, 0}, 1)); for (i = 1:60) s = s | twisted(s, i/100);",
+    "texts": 'text t = "abcdefgh"; for (i = 1:60) t = t + t;',
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("limit", ["--limit", "ulimit"])
+@pytest.mark.parametrize("name", DOUBLING if SOAK else list(DOUBLING)[::2])
+def test_what_doubles_keeps_within_the_limit(tmp_path: Path, name: str, limit: str) -> None:
+    (tmp_path / "model.sdl").write_text(DOUBLING[name])
+    words = [sys.executable, "-m", "moldloft", "check", "model.sdl"]
+    if limit == "--limit":
+        words += ["--limit", "memory=200M"]
+
+    def within() -> None:
+        resource.setrlimit(resource.RLIMIT_CPU, (60, 60))
+        if limit == "ulimit":
+            resource.setrlimit(resource.RLIMIT_AS, (800 << 20, 800 << 20))
+
+    done = subprocess.run(
+        ["/usr/bin/env", "python3", "-c", PEAK, *words], cwd=tmp_path, capture_output=True, text=True,
+        env={**os.environ, "RAYON_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"},
+        preexec_fn=within,
+    )  # fmt: skip
+    assert done.returncode == 1 and "error[" in done.stderr, done.stderr[-2000:]
+    assert "model.sdl:1:" in done.stderr and "limit" in done.stderr, done.stderr[-2000:]
+    if limit == "--limit":
+        # The interpreter and NumPy take 60 of them.
+        assert int(done.stdout.split()[-1]) < 1.2 * 200 + 60, done.stdout
+
+
+#: Runs a command and prints the peak of its memory in megabytes.
+PEAK = """
+import resource, subprocess, sys
+code = subprocess.run(sys.argv[1:]).returncode
+print(resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss // 1024)
+sys.exit(code)
+"""

@@ -22,7 +22,7 @@ impl<T: Real> FromValue<T> for FieldOrSet<T> {
 impl<T: Real> FieldOrSet<T> {
     fn remapped(&self, coordinates: &[Primitive<T>; 3]) -> Result<Value<T>, CallError> {
         match (&self.0, set_of(&self.0), primitive_of(&self.0)) {
-            (Value::Set(_), Some(s), _) => Ok(set_value(s.remapped(coordinates))),
+            (Value::Set(_), Some(s), _) => set(s.remapped(coordinates)),
             (_, _, Some(f)) => field(Ok(f.remapped(coordinates))),
             (value, ..) => Err(CallError::wrong_class(Class::Set, value.class())),
         }

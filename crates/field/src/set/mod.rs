@@ -7,8 +7,10 @@ use crate::expr::interval::Interval;
 use crate::expr::primitive::{Binary, Op};
 use crate::expr::tape::{Builder, ExprInstruction, ExprTape, NO_LEAF};
 use crate::{Affine, FieldError, Primitive};
+use moldloft_budget::Budget;
 use moldloft_num::{Box3, Real, Vec3};
 use rustc_hash::{FxHashMap, FxHashSet, FxHasher};
+use std::cell::Cell;
 use std::collections::BTreeMap;
 use std::convert::Infallible;
 use std::hash::{Hash, Hasher};
@@ -525,6 +527,22 @@ impl<T: Real> Set<T> {
         Ok(out.swap_remove(0))
     }
 
+    /// The set with other primitives, as far as memory suffices.
+    ///
+    /// # Errors
+    /// [`FieldError::Spent`].
+    fn copied(&self, leaf: &dyn Fn(&Primitive<T>) -> Self) -> Result<Self, FieldError> {
+        let spent = Cell::new(None);
+        let within_memory = |p: &Primitive<T>| {
+            if spent.get().is_none() {
+                spent.set(Budget::default().grow(0).err());
+            }
+            if spent.get().is_none() { leaf(p) } else { Self::nothing() }
+        };
+        let copy = self.rebuilt(&within_memory, false, &Self::combined);
+        spent.get().map_or(Ok(copy), |spent| Err(FieldError::Spent(spent)))
+    }
+
     fn combined(union: bool, a: Self, b: Self) -> Self {
         if union { a.join(b) } else { a.cut(b) }
     }
@@ -575,13 +593,15 @@ impl<T: Real> Set<T> {
     /// The set with its coordinates replaced; see [`Primitive::remapped`]. A map that only rotates
     /// about the z axis, such as a twist, is intersected with a box that contains all rotations, so
     /// that its ends need no search.
-    pub fn remapped(&self, coordinates: &[Primitive<T>; 3]) -> Self {
-        let leaf = |p: &Primitive<T>| Self::of_leaf(&p.remapped(coordinates));
-        let made = self.rebuilt(&leaf, false, &Self::combined);
-        match crate::query::bounds::box_of_turns(self, coordinates) {
+    ///
+    /// # Errors
+    /// [`FieldError::Spent`] if memory does not suffice.
+    pub fn remapped(&self, coordinates: &[Primitive<T>; 3]) -> Result<Self, FieldError> {
+        let made = self.copied(&|p| Self::of_leaf(&p.remapped(coordinates)))?;
+        Ok(match crate::query::bounds::box_of_turns(self, coordinates) {
             Some(within) => made & within.constant(),
             None => made,
-        }
+        })
     }
 
     /// The function of the set as one primitive: minima over unions, maxima over intersections.
@@ -597,7 +617,7 @@ impl<T: Real> Set<T> {
     /// The set moved by an affine map.
     ///
     /// # Errors
-    /// A map without inverse.
+    /// A map without inverse, or [`FieldError::Spent`] if memory does not suffice.
     pub fn mapped(&self, world_from: &Affine<T>) -> Result<Self, FieldError> {
         // One trial decides: a map has an inverse or not, whatever the primitive.
         Primitive::real(T::zero()).mapped(world_from)?;
@@ -605,7 +625,7 @@ impl<T: Real> Set<T> {
             Ok(p) => Self::of(SetNodeKind::Leaf(p), Vec::new()),
             Err(_) => Self::nothing(),
         };
-        Ok(self.rebuilt(&move_leaf, false, &Self::combined))
+        self.copied(&move_leaf)
     }
 
     /// An equal set without parts that combine to nothing new: A|A = A, A|-A = everything, A&-A =

@@ -9,8 +9,9 @@ use crate::source::scope::{Binding, Passed, ScopedBinding};
 use crate::value::ops;
 use crate::value::variables;
 use crate::value::variables::Called as _;
+use moldloft_budget::Spent;
 use moldloft_diag::{Diagnostic, Span};
-use moldloft_model::Failure;
+use moldloft_model::{Failure, number_count};
 use moldloft_num::{Order, Vec3};
 use moldloft_registry::{
     Array, ArrayShape, Class, CurveRef, Given, Implementation, Role, Row, Scalar, SurfaceRef,
@@ -21,6 +22,9 @@ use moldloft_syntax::sdl::{
     Arg, BinaryOp, ExprId, ExprKind, NodeList, Subscript, Symbol, UnaryOp, foreign_word,
 };
 use std::sync::Arc;
+
+/// Bytes of the arguments of a function up to which memory is not looked at.
+const SMALL_ARGUMENTS: usize = 1 << 20;
 
 type Evaluated<T> = Result<Value<T>, Diagnostic>;
 
@@ -636,6 +640,10 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         let positional = given.positional.len();
         let (filled, _) = bind_arguments(row, given, |_| Class::Any)
             .map_err(|fault| fault_location::diagnostic(m, args, row, positional, &fault, span))?;
+        let room = self.has_room_for(&filled);
+        room.map_err(|fault| {
+            fault_location::diagnostic(m, args, row, positional, &fault.into(), span)
+        })?;
         // Values that are as fast to compute as to look up are not cached.
         let value = if let Some(nested) = self.nested_row(row, &filled, span) {
             nested
@@ -660,6 +668,16 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             .expected("arguments inside the function's domain"));
         }
         Ok(value)
+    }
+
+    /// Checks that memory suffices for the rows that a function makes of its arguments, and for a
+    /// result of their size.
+    fn has_room_for(&self, args: &[Value<T>]) -> Result<(), Spent> {
+        let bytes = args.iter().map(number_count).sum::<usize>() * size_of::<f64>();
+        match bytes {
+            0..SMALL_ARGUMENTS => Ok(()),
+            _ => self.inputs.budget.grow(2 * bytes as u64),
+        }
     }
 
     fn unknown_function(&self, m: &Module, symbol: Symbol) -> Diagnostic {

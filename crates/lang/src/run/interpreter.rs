@@ -14,7 +14,7 @@ use crate::value::subarray::Place;
 use crate::value::variables::Called as _;
 use crate::value::variables::{self, Taken};
 use indexmap::IndexMap;
-use moldloft_budget::{Budget, Limits};
+use moldloft_budget::{Budget, Limits, Spent};
 use moldloft_diag::{Diagnostic, Span, nearest};
 use moldloft_model::{Extent, Run};
 use moldloft_num::trace::Key;
@@ -229,6 +229,8 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
         let diagnostic = self.at_call(diagnostic);
         self.usage.errors += usize::from(diagnostic.is_error());
         let span = diagnostic.span();
+        // What has grown so far stays: later statements would take time and more memory.
+        self.env.stopped |= diagnostic.id == Spent::Refused.id();
         if self.reported.insert((diagnostic.id.clone(), span)) {
             self.loader.diagnostics.push(diagnostic);
         }

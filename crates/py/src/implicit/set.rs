@@ -114,10 +114,11 @@ impl PySet {
         self.inner.mapped(&map).map(|s| self.from(s)).map_err(plain_error)
     }
 
-    fn remapped(&self, x: &PyField, y: &PyField, z: &PyField) -> Self {
+    fn remapped(&self, x: &PyField, y: &PyField, z: &PyField) -> PyResult<Self> {
         let coordinates = [&x.inner, &y.inner, &z.inner].map(Clone::clone);
         let slots = self.slots.with(&x.slots).with(&y.slots).with(&z.slots);
-        Self { inner: self.inner.remapped(&coordinates), slots }
+        let inner = self.inner.remapped(&coordinates).map_err(plain_error)?;
+        Ok(Self { inner, slots })
     }
 
     /// The set as text of its own format.
