@@ -7,6 +7,7 @@ import type { Hands } from './hands'
 import type { Held } from './history'
 import type { Host } from './host'
 import { type Given, type Link, Newest, Refused, type RequestKind, type RequestOf } from './link'
+import type { Preview } from './preview'
 import { model } from './state'
 
 /** A hand that has not moved for this long rests, in ms. */
@@ -37,6 +38,7 @@ export class Changes {
 
   constructor(
     private readonly link: Link,
+    preview: Preview,
     private readonly host: Host | null,
     private readonly say: (words: string) => void,
     private readonly warn: (words: string) => void,
@@ -45,7 +47,7 @@ export class Changes {
       async (values) => {
         const from = performance.now()
         try {
-          await link.ask('set', { values })
+          await preview.ask('set', { values })
           this.stamps.push({ kind: 'set', from, to: performance.now() })
         } catch (error) {
           if (error instanceof Refused && error.message !== 'superseded') say(error.message)

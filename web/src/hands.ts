@@ -5,6 +5,7 @@ import { ink } from './colour'
 import { h, shown } from './dom'
 import { Gumball } from './gumball'
 import { type Link, Newest, Refused } from './link'
+import type { Preview } from './preview'
 import type { EditFact, FaultFact, HandleFact } from './protocol'
 import { model, on } from './state'
 import { typed } from './typed'
@@ -88,6 +89,7 @@ export class Hands {
   constructor(
     private readonly view: View,
     private readonly link: Link,
+    private readonly preview: Preview,
     host: HTMLElement,
     private readonly act: Handlers,
   ) {
@@ -408,7 +410,7 @@ export class Hands {
     const grain = camera.grain(this.view.height)
     this.requests.push(async () => {
       try {
-        const { head } = await this.link.ask('drag_to', {
+        const { head } = await this.preview.ask('drag_to', {
           target: target.toArray(),
           basis: basis.map((b) => b.toArray()),
           names: drag.chosen,

@@ -12,7 +12,8 @@ export class Refused extends Error {
   }
 }
 
-/** What the server answers in frames besides its engine, and what it has to know of a request besides. */
+/** What the server answers in frames besides its engine, and what it has to know of a request besides, as the engine of
+ * a change of a number that moves. */
 interface ServerRequests {
   /** A CAD file as a program. */
   import: { name: string; data: string; units: string }
@@ -20,7 +21,13 @@ interface ServerRequests {
   functions: Record<never, never>
   /** A file of the model with values that are not in its text. */
   export: Requests['export'] & { values: Record<string, number> }
+  set: Requests['set'] & Coarser
+  solve_for: Requests['solve_for'] & Coarser
+  drag_to: Requests['drag_to'] & Coarser
 }
+
+/** Number of halvings by which the cells of bodies of sets are larger than stated. */
+type Coarser = { coarser?: number }
 
 type All = Omit<Requests, keyof ServerRequests> & ServerRequests
 

@@ -30,6 +30,7 @@ const NEWEST = new Set([
   'set',
   'solve_for',
   'drag_to',
+  'settle',
   'sync',
   'hover',
   'complete',

@@ -24,6 +24,7 @@ import { GivenNumbers } from './numbers'
 import { Orientation } from './orientation'
 import { help, palette } from './palette'
 import { inspectorPanel, messagesPanel, parametersPanel, strip } from './panels'
+import { Preview } from './preview'
 import { triangles } from './probe'
 import type { ValueFact } from './protocol'
 import { Rooms } from './rooms'
@@ -80,7 +81,8 @@ view.onFrame = () => {
 
 // What the page does.
 
-const changes = new Changes(link, host, say, warn)
+const preview = new Preview(link)
+const changes = new Changes(link, preview, host, say, warn)
 const saving = new Saving(link, host, shell, changes, (blob, name) => give(app, blob, name))
 const hidden = new Set<string>()
 const inspecting = new Newest<() => Promise<void>>((run) => run())
@@ -236,7 +238,7 @@ editor.onCursor = (offset) => {
   }, 120)
 }
 
-const hands = new Hands(view, link, shell.view, {
+const hands = new Hands(view, link, preview, shell.view, {
   select: (name) => actions.select(name, 'view'),
   hover: actions.hover,
   say,
@@ -302,7 +304,7 @@ strip(
   shell.footer,
   actions,
   (place) =>
-    new GivenNumbers(place, link, {
+    new GivenNumbers(place, preview, {
       say,
       write: actions.write,
       typed: actions.typed,

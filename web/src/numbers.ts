@@ -1,7 +1,8 @@
 // Numbers that are given: a watched number is typed or dragged, and chosen parameters follow by the least change.
 
 import { h, shown, store, stored } from './dom'
-import { type Link, Newest, Refused } from './link'
+import { Newest, Refused } from './link'
+import type { Preview } from './preview'
 import { model } from './state'
 
 interface Adjustment {
@@ -36,7 +37,7 @@ export class GivenNumbers {
 
   constructor(
     host: HTMLElement,
-    private readonly link: Link,
+    private readonly preview: Preview,
     private readonly act: NumberActions,
   ) {
     host.append(this.panel)
@@ -46,7 +47,10 @@ export class GivenNumbers {
         const by = Object.fromEntries(
           Object.entries(this.homes).map(([name, home]) => [name, { home, weight: weights[name] ?? 1 }]),
         )
-        const { head } = await this.link.ask('solve_for', { targets: { ...this.held(), [this.expression]: value }, by })
+        const { head } = await this.preview.ask('solve_for', {
+          targets: { ...this.held(), [this.expression]: value },
+          by,
+        })
         this.found = head.adjustments
         const reached = new Map<string, number>(head.reached)
         this.reached = reached.get(this.expression) ?? value

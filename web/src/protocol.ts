@@ -14,6 +14,8 @@ export interface Requests {
   open: Record<never, never>
   /** Changes since the last reply to this viewer. */
   sync: Record<never, never>
+  /** Makes bodies exact that a change with `coarser` has made coarser. */
+  settle: Record<never, never>
   /** Ends the viewer. */
   close: Record<never, never>
   /** Replaces the text. */

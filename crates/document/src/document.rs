@@ -8,7 +8,6 @@ use moldloft_budget::{Budget, Spent};
 use moldloft_diag::{Diagnostic, Sources};
 use moldloft_io::NamedGrid;
 use moldloft_lang::functions::plots::grids_of;
-use moldloft_lang::model_file::units::{self, PhysicalDimension};
 use moldloft_lang::run::interpreter::{Inputs, Settings};
 use moldloft_lang::run::program::{self, RunContext};
 use moldloft_lang::run::weight::mass_and_centre;
@@ -66,10 +65,9 @@ pub struct Document {
     tolerant: bool,
     /// True when figures and files of an incomplete model are allowed.
     partial: bool,
+    /// See [`Document::preview`].
+    coarser: u32,
 }
-
-/// The unit of length of a sketch that states none.
-const ASSUMED_UNIT: &str = "mm";
 
 /// Source of the objects.
 pub(crate) enum ObjectSource {
@@ -194,6 +192,7 @@ impl Document {
             kept: Kept::default(),
             settings: Settings::default(),
             partial: false,
+            coarser: 0,
             tolerant: false,
         }
     }
@@ -259,6 +258,7 @@ impl Document {
         self.run_diagnostics.clear();
         let mut evaluation = std::mem::take(&mut self.plain);
         let seeds = HashSet::new();
+        evaluation.graph.set_coarser(self.coarser);
         let earlier = evaluation.graph.objects().next().is_some();
         self.applied = self.evaluate(&mut evaluation, &|_, x| x, &seeds, true);
         let refused = self.budget.poll() == Err(Spent::Refused);
@@ -266,6 +266,7 @@ impl Document {
         if earlier && short && !refused {
             // Results of earlier runs may be what fills the memory.
             evaluation = Evaluation::default();
+            evaluation.graph.set_coarser(self.coarser);
             self.forget_results();
             self.run_diagnostics.clear();
             self.applied = self.evaluate(&mut evaluation, &|_, x| x, &seeds, true);
@@ -279,6 +280,18 @@ impl Document {
             self.solve();
         }
         self.applied
+    }
+
+    /// Runs the model with cells of bodies of sets that are larger than stated by a number of
+    /// halvings: a preview while a number moves. True if the number differs from the last one.
+    ///
+    /// Derivatives are those of the stated cells.
+    pub fn preview(&mut self, coarser: u32) -> bool {
+        if std::mem::replace(&mut self.coarser, coarser) == coarser {
+            return false;
+        }
+        self.run();
+        true
     }
 
     /// Frees results of the plain run that are cached for the next one.
@@ -361,6 +374,11 @@ impl Document {
             Ok(()) => fault,
             Err(spent) => unplaced(&CallError::from(spent)),
         }
+    }
+
+    /// True if the last run was cancelled or ran out of memory.
+    pub fn is_cut_short(&self) -> bool {
+        self.cut_short
     }
 
     /// Succeeds when the last run is complete.
@@ -848,55 +866,6 @@ impl Document {
         match &self.source {
             ObjectSource::ModelFile(source) => source.symmetry(),
             _ => moldloft_lang::model_file::header::symmetry(&self.plain.graph),
-        }
-    }
-
-    /// The units that the model states, such as "m t".
-    pub fn units(&self) -> String {
-        match &self.source {
-            ObjectSource::ModelFile(source) => source.units(),
-            ObjectSource::Sketch(sketch) => {
-                sketch.unit().unwrap_or_else(|| ASSUMED_UNIT.to_owned())
-            }
-            _ => self.units_of_program(),
-        }
-    }
-
-    /// The warning of a sketch that states no unit of length, for files that state one.
-    pub fn assumed_unit(&self) -> Option<Diagnostic> {
-        let of = match &self.source {
-            ObjectSource::Sketch(sketch) => sketch.unit().is_none().then(|| sketch.path.clone())?,
-            ObjectSource::Program => self.unitless_sketch()?.to_owned(),
-            _ => return None,
-        };
-        let message = format!("the sketch states no unit of length; millimetres are taken ({of})");
-        let warning = Diagnostic::warning("assumed-unit", message);
-        Some(warning.help("SET UNITS in the sketch states one"))
-    }
-
-    /// The first sketch of a program where nothing states a unit of length.
-    fn unitless_sketch(&self) -> Option<&str> {
-        let stated = moldloft_lang::model_file::header::text(&self.plain.graph, "units");
-        let known = units::parsed(&stated).unwrap_or_default();
-        let length = known.iter().any(|u| u.1 == PhysicalDimension::Length);
-        let none = !length && self.plain.env.sketch_units.is_empty();
-        self.plain.env.sketches.first().filter(|_| none).map(String::as_str)
-    }
-
-    /// The units that a program states; its length is in the unit of the sketches that it loads when it states none, and
-    /// in millimetres when those state none either.
-    fn units_of_program(&self) -> String {
-        let stated = moldloft_lang::model_file::header::text(&self.plain.graph, "units");
-        let known = units::parsed(&stated).unwrap_or_default();
-        let length = known.iter().any(|u| u.1 == PhysicalDimension::Length);
-        match self.plain.env.sketch_units.first().filter(|_| !length) {
-            Some((_, unit, _)) if stated.is_empty() => unit.clone(),
-            Some((_, unit, _)) => format!("{unit} {stated}"),
-            None if self.unitless_sketch().is_some() && stated.is_empty() => {
-                ASSUMED_UNIT.to_owned()
-            }
-            None if self.unitless_sketch().is_some() => format!("{ASSUMED_UNIT} {stated}"),
-            None => stated,
         }
     }
 

@@ -33,6 +33,7 @@ pub mod searches;
 mod set;
 mod solve;
 mod solve_for;
+mod stated_units;
 mod statements;
 
 pub use convert::ModelFormat;

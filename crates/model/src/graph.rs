@@ -179,6 +179,18 @@ impl<T: Scalar> Graph<T> {
         self.context.kept = kept;
     }
 
+    /// Sets [`Context::coarser`]; the next application evaluates objects whose value depends on it.
+    pub fn set_coarser(&mut self, halvings: u32) {
+        if std::mem::replace(&mut self.context.coarser, halvings) == halvings {
+            return;
+        }
+        let previewed: Vec<Key> =
+            self.objects().filter(|o| o.row.previewed).map(|o| o.key).collect();
+        for key in previewed {
+            self.mark_pending(key);
+        }
+    }
+
     pub(crate) fn object(&self, key: Key) -> &Object<T> {
         self.get(key).expect("the key of a living object")
     }

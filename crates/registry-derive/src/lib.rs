@@ -21,7 +21,7 @@
 //! = [bead, point]`: the fields of a bead and of a point that the model moves; see
 //! `moldloft_registry::Row::sweep`. `role`: the role of the kind for the interpreter besides its
 //! value, a `moldloft_registry::Role`. `forward`: derivatives by forward differentiation alone; other
-//! rows have a body for numbers of a tape, too. Each field has a constant that names it in faults,
+//! rows have a body for numbers of a tape, too. `previewed`: see `moldloft_registry::Row`. Each field has a constant that names it in faults,
 //! `Self::C1` for `c1`: `fault.in_field(Self::C1)`. Field: `default` (absent) or `default = 3`,
 //! `min`, `max`, `min_items`, `angle`, `variadic`.
 
@@ -52,6 +52,7 @@ struct KindOptions {
     shape: bool,
     relabel: bool,
     forward: bool,
+    previewed: bool,
     sweep: Option<Vec<syn::Ident>>,
     role: Option<Expr>,
 }
@@ -279,7 +280,8 @@ fn row(
     };
     let extra =
         if relabelled { quote!(, ::moldloft_registry::export::RELABEL_FIELD) } else { quote!() };
-    let (class, cheap, is_kind) = (&options.class, options.cheap, !options.function);
+    let (class, is_kind) = (&options.class, !options.function);
+    let (cheap, previewed) = (options.cheap, options.previewed);
     Ok(quote!(
         ::moldloft_registry::Row {
             name: #name.into(),
@@ -291,6 +293,7 @@ fn row(
             example: #example.into(),
             sweep: #sweep,
             cheap: #cheap,
+            previewed: #previewed,
             role: #role,
             body: ::moldloft_registry::Implementation::Native {
                 plain: #ident::<f64>::call,
@@ -395,6 +398,7 @@ fn kind_options(input: &DeriveInput) -> syn::Result<KindOptions> {
                 Meta::Path(path) if path.is_ident("shape") => options.shape = true,
                 Meta::Path(path) if path.is_ident("relabel") => options.relabel = true,
                 Meta::Path(path) if path.is_ident("forward") => options.forward = true,
+                Meta::Path(path) if path.is_ident("previewed") => options.previewed = true,
                 other => return Err(syn::Error::new_spanned(other, "unknown option of a kind")),
             }
         }

@@ -48,6 +48,9 @@ pub struct Context {
     pub tolerance: f64,
     /// Nesting depth of the shapes in the arguments.
     pub nesting: u32,
+    /// Number of halvings by which the cells of bodies of sets are larger than stated: a preview
+    /// while a number moves. Rows that read it are [`Row::previewed`].
+    pub coarser: u32,
     /// Limits of calls; long ones can be cancelled through it.
     pub budget: Arc<Budget>,
     /// Data kept between calls.
@@ -87,6 +90,7 @@ impl Default for Context {
         Self {
             tolerance: DEFAULT_TOLERANCE,
             nesting: 0,
+            coarser: 0,
             budget: Arc::default(),
             kept: Kept::default(),
             remarks: Arc::default(),
@@ -264,6 +268,8 @@ pub struct Row {
     pub sweep: Option<[FieldId; 2]>,
     /// True for a function as fast as a look-up of its cached value: it is always called.
     pub cheap: bool,
+    /// True if its value depends on [`Context::coarser`].
+    pub previewed: bool,
     /// Role besides its value.
     pub role: Role,
     /// Implementation.
@@ -283,6 +289,7 @@ impl Row {
             example: Cow::Borrowed(""),
             sweep: None,
             cheap: false,
+            previewed: false,
             role: Role::Plain,
             body,
         }

@@ -16,6 +16,10 @@ pub struct Request {
     /// The version of the text that offsets refer to; repeated in the reply.
     #[serde(default)]
     pub version: Option<u64>,
+    /// Number of halvings by which the cells of bodies of sets are larger than stated, for a change
+    /// while a number moves; see [`Ask::settles`].
+    #[serde(default)]
+    pub coarser: u32,
     /// The request.
     #[serde(flatten)]
     pub ask: Ask,
@@ -44,6 +48,8 @@ pub enum Ask {
     Open,
     /// Changes since the last reply to this viewer.
     Sync,
+    /// Makes bodies exact that a change with `coarser` has made coarser.
+    Settle,
     /// Ends the viewer.
     Close,
     /// Replaces the text.
@@ -281,12 +287,33 @@ pub enum Ask {
 }
 
 impl Ask {
+    /// True when a request without `coarser` makes coarser bodies exact first: it changes the model
+    /// or answers with figures of it. The scene follows by `settle`.
+    pub fn settles(&self) -> bool {
+        match self {
+            Ask::Open | Ask::Sync | Ask::Show { .. } => false,
+            Ask::Settle
+            | Ask::Inspect { .. }
+            | Ask::Measure
+            | Ask::Evaluate { .. }
+            | Ask::Field { .. }
+            | Ask::Deviation
+            | Ask::SectionAreas { .. }
+            | Ask::LinesPlan { .. }
+            | Ask::Mesh
+            | Ask::Hydrostatics
+            | Ask::Export { .. } => true,
+            other => other.changes(),
+        }
+    }
+
     /// True when the request may change the scene.
     pub fn changes(&self) -> bool {
         matches!(
             self,
             Ask::Open
                 | Ask::Sync
+                | Ask::Settle
                 | Ask::Text { .. }
                 | Ask::TextBeside { .. }
                 | Ask::Splice { .. }

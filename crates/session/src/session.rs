@@ -179,6 +179,11 @@ impl Session {
         {
             self.version = version;
         }
+        let previewed = request.coarser > 0;
+        let settles = matches!(request.ask, Ask::Settle);
+        if (previewed || request.ask.settles()) && self.document.preview(request.coarser) {
+            self.rev += 1;
+        }
         match self.carry_out(request.ask, tab, frame) {
             Ok(()) => {}
             Err(Refusal::Words(words)) => frame.put("error", words),
@@ -189,7 +194,8 @@ impl Session {
                 frame.put("faults", json_of(faults));
             }
         }
-        if changes {
+        // Bodies that a cancelled run has not reached stay in the picture.
+        if changes && !(settles && self.document.is_cut_short()) {
             self.sync(tab, frame);
         }
     }
@@ -231,7 +237,7 @@ impl Session {
 
     fn carry_out(&mut self, ask: Ask, tab: u64, frame: &mut ReplyFrame) -> Answer {
         match ask {
-            Ask::Open | Ask::Sync | Ask::Close | Ask::Ping => {}
+            Ask::Open | Ask::Sync | Ask::Settle | Ask::Close | Ask::Ping => {}
             Ask::Text { text } => self.take_text(text),
             Ask::TextBeside { name, text } => {
                 self.texts.put(&name, text.as_deref());

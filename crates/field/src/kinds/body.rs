@@ -24,6 +24,7 @@ pub fn options(resolution: Resolution, context: &Context) -> FacetOptions {
 #[derive(Kind)]
 #[kind(
     forward,
+    previewed,
     class = Mesh,
     example = "set ball = set(sphere({0, 0, 0}, 1)); SetBody b(ball, depth = 4);"
 )]
@@ -69,14 +70,23 @@ impl<T: Real> Build<T> for SetBody<T> {
         let region = region(&plain, &self.low, &self.high, [Self::SET, Self::HIGH])?;
         let lifter = Lifter::of(set, &plain, region.corners);
         let simplify = self.simplify.map(T::re);
-        let body =
+        let made = |resolution, simplify| {
             facets_of(&plain, &region.over, &options(resolution, context), &context.kept.of())
                 .and_then(|pieces| match simplify {
                     Some(accuracy) => pieces.simplified(accuracy),
                     None => Ok(pieces),
                 })
                 .and_then(|pieces| pieces.body(&lifter))
-                .map_err(|e| fault(&e))?;
+        };
+        // A part that coarser cells do not resolve is shown as it is.
+        if let Some(coarser) = coarser(resolution, context.coarser)
+            && let Ok(body) = made(coarser, None)
+            && body.flaws.is_empty()
+            && !body.triangles.is_empty()
+        {
+            return Ok(Value::Body(Arc::new(body)));
+        }
+        let body = made(resolution, simplify).map_err(|e| fault(&e))?;
         if body.triangles.is_empty() && body.wires.is_empty() && body.dots.is_empty() {
             if let Some(flaw) = body.flaws.iter().find(|f| f.name == "unresolved") {
                 let remark = &flaw.remark;
@@ -94,6 +104,23 @@ impl<T: Real> Build<T> for SetBody<T> {
         }
         Ok(Value::Body(Arc::new(body)))
     }
+}
+
+/// Coarsest level of a preview.
+const COARSEST_PREVIEW: u32 = 3;
+
+/// The resolution with cells larger by a number of halvings; `None` if none are.
+fn coarser(resolution: Resolution, halvings: u32) -> Option<Resolution> {
+    let less = |level: u32| level.saturating_sub(halvings).max(COARSEST_PREVIEW.min(level));
+    let coarser = match resolution {
+        Resolution::Depth(depth) => Resolution::Depth(less(depth)),
+        Resolution::Level(level) => Resolution::Level(less(level)),
+        // The distance of a chord from its curve grows with the square of the length.
+        Resolution::Accuracy(accuracy) => {
+            Resolution::Accuracy(accuracy * 4_f64.powi(halvings.min(16) as i32))
+        }
+    };
+    (coarser != resolution).then_some(coarser)
 }
 
 /// The facets of a set: of solids only, or of all dimensions.

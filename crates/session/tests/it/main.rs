@@ -3,6 +3,7 @@
 
 mod drags;
 mod overlays;
+mod previews;
 mod scenes;
 mod statements;
 mod texts_beside;
