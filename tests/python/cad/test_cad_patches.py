@@ -139,7 +139,7 @@ def test_bodies_on_any_surfaces_are_valid_solids_of_the_stated_accuracy(
     # Printed as well, but no warning.
     remarks = {d.id for d in model.export_remarks}
     thin = "thin-faces" in remarks
-    assert remarks - {"thin-faces"} == {"fitted-surfaces"} and thin <= touching
+    assert remarks - {"thin-faces", "assumed-unit"} == {"fitted-surfaces"} and thin <= touching
     written = step.read_text()
     stated = re.search(r"'deviation',LENGTH_MEASURE\(([^)]*)\)", written)
     assert stated

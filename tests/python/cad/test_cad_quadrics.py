@@ -187,7 +187,9 @@ def test_quadrics_are_exact_faces(name: str, seed: int, tmp_path: Path) -> None:
 
     kind = next(k for k in KINDS if k.__name__ == name)
     drawn = kind(np.random.default_rng([2200, seed, KINDS.index(kind)]))
-    model = moldloft.loads(f"{drawn.text} SetBody b(s, {drawn.box}, depth = 5);")
+    model = moldloft.loads(
+        f'Model info(units = "m"); {drawn.text} SetBody b(s, {drawn.box}, depth = 5);'
+    )
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         (step,) = model.write(tmp_path / "b.step")
