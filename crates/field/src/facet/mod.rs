@@ -451,7 +451,7 @@ fn on_grid(
     before: Option<&Facets>,
 ) -> Result<Facets, FieldError> {
     let step = grid.step;
-    let compiled = capped(set, over)?.compiled();
+    let compiled = capped(set, over)?.compiled_within_memory()?;
     let own_leaves = own_leaves(&compiled);
     let grid = grid.fitted(&compiled.tape, own_leaves, over);
     let reuse = before

@@ -241,7 +241,7 @@ pub fn certified(
 ) -> Result<Certified, FieldError> {
     let over = solid_box(*over)?;
     // Sheets have no volume.
-    let compiled = solid_part(set).compiled();
+    let compiled = solid_part(set).compiled_within_memory()?;
     let about = over.centre();
     let last = (effort.accuracy <= 0.0 && effort.depth < ALL).then_some(effort.depth);
     let work = Work { about, last, budget };

@@ -63,7 +63,7 @@ impl Ord for ReachBox {
 /// ```
 pub fn bounds(set: &Set, accuracy: f64) -> Result<Option<Box3>, FieldError> {
     crate::error::positive("accuracy", accuracy)?;
-    let tape = set.compiled().tape;
+    let tape = set.compiled_within_memory()?.tape;
     if set.is_nothing() {
         return Ok(None);
     }
@@ -218,10 +218,13 @@ const TURNED: f64 = 1e-9;
 
 /// The box about the z axis in which a set stays when its coordinates are replaced by ones that keep heights and distances from
 /// the axis; `None` for others, and for a set without end.
+///
+/// # Errors
+/// [`FieldError::Spent`].
 pub(crate) fn box_of_turns<T: Real>(
     set: &Set<T>,
     coordinates: &[Primitive<T>; 3],
-) -> Option<Set<f64>> {
+) -> Result<Option<Set<f64>>, FieldError> {
     let [x, y, z] = [0, 1, 2].map(|k| coordinates[k].re());
     let turns = TURNED_AT.into_iter().all(|at| {
         let p = Vec3::from(at);
@@ -229,13 +232,17 @@ pub(crate) fn box_of_turns<T: Real>(
         (a - b).abs() <= TURNED * (1.0 + b) && z.value(p) == p.z
     });
     if !turns {
-        return None;
+        return Ok(None);
     }
-    let over = around(&set.re()).ok().flatten()?;
+    let over = match around(&set.re()) {
+        Err(spent @ FieldError::Spent(_)) => return Err(spent),
+        Ok(Some(over)) => over,
+        _ => return Ok(None),
+    };
     let far = |k: usize| over.low[k].abs().max(over.high[k].abs());
     let reach = libm::hypot(far(0), far(1));
     let low = Vec3::of(-reach, -reach, over.low.z);
-    Set::cuboid(low, Vec3::of(reach, reach, over.high.z)).ok()
+    Ok(Set::cuboid(low, Vec3::of(reach, reach, over.high.z)).ok())
 }
 
 #[cfg(test)]

@@ -598,7 +598,7 @@ impl<T: Real> Set<T> {
     /// [`FieldError::Spent`] if memory does not suffice.
     pub fn remapped(&self, coordinates: &[Primitive<T>; 3]) -> Result<Self, FieldError> {
         let made = self.copied(&|p| Self::of_leaf(&p.remapped(coordinates)))?;
-        Ok(match crate::query::bounds::box_of_turns(self, coordinates) {
+        Ok(match crate::query::bounds::box_of_turns(self, coordinates)? {
             Some(within) => made & within.constant(),
             None => made,
         })
@@ -683,6 +683,22 @@ impl<T: Real> Set<T> {
     }
 
     pub(crate) fn compiled(&self) -> Compiled<T> {
+        let made: Result<_, Infallible> = self.compiled_while(&|| Ok(()));
+        let Ok(made) = made;
+        made
+    }
+
+    /// As [`Self::compiled`], as far as memory suffices.
+    ///
+    /// # Errors
+    /// [`FieldError::Spent`].
+    pub(crate) fn compiled_within_memory(&self) -> Result<Compiled<T>, FieldError> {
+        let budget = Budget::default();
+        self.compiled_while(&|| budget.grow(0).map_err(FieldError::Spent))
+    }
+
+    /// The code of the set, as long as `check` allows another leaf.
+    fn compiled_while<E>(&self, check: &dyn Fn() -> Result<(), E>) -> Result<Compiled<T>, E> {
         let mut builder = Builder::new();
         let mut leaves: Vec<Leaf<T>> = Vec::new();
         let mut values: Vec<u32> = Vec::new();
@@ -714,6 +730,7 @@ impl<T: Real> Set<T> {
                 (SetNodeKind::Everything, _) => builder.push(ExprInstruction::Real(T::from(-1.0))),
                 (SetNodeKind::Nothing, _) => builder.push(ExprInstruction::Real(T::one())),
                 (SetNodeKind::Leaf(p), _) => {
+                    check()?;
                     let at = builder.primitive(p);
                     builder.mark(at, leaves.len() as u32);
                     places.push(builder.leaf_of(at));
@@ -742,7 +759,7 @@ impl<T: Real> Set<T> {
             values.push(at);
         }
         let root = values.pop().unwrap_or(0);
-        Compiled { tape: Arc::new(builder.build(root)), leaves, places }
+        Ok(Compiled { tape: Arc::new(builder.build(root)), leaves, places })
     }
 
     /// The value that decides at a point, and the index of its leaf in [`Set::leaves`]; `None` for
