@@ -32,8 +32,8 @@ def main(folder: Path) -> None:
     bottle = model("neck")["bottle"].value
     box = (-3.2, -2.6, -1.6), (2.6, 1.6, 1.6)
     bottle.picture(path("neck"), *box, size=SIZE, samples=2)
-    for name in ("lambdas", "quadric", "wave", "wires", "manifold"):
-        png = model(name)._document.picture(*SIZE)
+    for name in ("lambdas", "quadric", "wave", "wires", "manifold", "lattices"):
+        png = model(name).picture(*SIZE)
         path(name).write_bytes(png)
 
 

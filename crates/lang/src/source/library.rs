@@ -7,11 +7,12 @@ use moldloft_diag::nearest;
 pub(crate) const FOLDER: &str = "moldloft:";
 
 /// Name and text of each library.
-pub const LIBRARIES: [(&str, &str); 5] = [
+pub const LIBRARIES: [(&str, &str); 6] = [
     ("stdsubs.sdl", include_str!("../../sdl/stdsubs.sdl")),
     ("mslbody.sdl", include_str!("../../sdl/mslbody.sdl")),
     ("attach.sdl", include_str!("../../sdl/attach.sdl")),
     ("topologies.sdl", include_str!("../../sdl/topologies.sdl")),
+    ("solids.sdl", include_str!("../../sdl/solids.sdl")),
     ("naca.sdl", include_str!("../../sdl/naca.sdl")),
 ];
 
