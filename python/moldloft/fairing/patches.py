@@ -276,9 +276,7 @@ def patches(
     )
 
 
-def _limits(
-    tol: float | Sequence[ArrayLike] | None, surfaces: Sequence[SplineSurface]
-) -> list[float]:
+def _limits(tol: Any, surfaces: Sequence[SplineSurface]) -> list[float]:
     """The tolerances of the control points of all surfaces."""
     counts = [s._core.shape[0] * s._core.shape[1] for s in surfaces]
     if not isinstance(tol, (list, tuple)):

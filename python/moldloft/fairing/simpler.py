@@ -18,6 +18,15 @@ __all__ = ["simpler"]
 _ROUNDS = 60
 """Rounds of weights for the least largest distance (Lawson 1961)."""
 
+_SLOPES = 5
+"""Rounds after which the slopes of distances are known."""
+
+_NEAR = 1.02
+"""Ratio to the least largest distance that is near enough."""
+
+_MOST_FITTED = 1000
+"""Points that are fitted."""
+
 _SPARE = 4
 """Points beyond those that determine a curve, for a coincidence to be excluded."""
 
@@ -26,6 +35,9 @@ _STRAIGHT = 1e-3
 
 _PLANE = 1e-9
 """Distance from a plane, relative to the size, of points in it."""
+
+_FAR = 10.0
+"""A step over the size of the points beyond which there is no foot."""
 
 _MOST_PIECES = {"line": 1, "circle": 1, "conic": 4}
 
@@ -54,7 +66,12 @@ def simpler(
         A note; ``None`` where there is no such curve of these kinds.
     """
     word, way = motion
-    if word not in ("ball", "box", "along") or not (limits > 0).all() or after.pieces < 1:
+    if word not in ("ball", "box", "along") or not (limits > 0).all():
+        return None
+    # Points without limit say nothing about a curve.
+    held = np.isfinite(limits)
+    data, limits = data[held], limits[held]
+    if len(data) < 2 + _SPARE:
         return None
     plane = _plane(data)
     if plane is None:
@@ -71,7 +88,7 @@ def simpler(
             bent |= after.largest_curvature * length > _STRAIGHT
         if not bent:
             continue
-        found = _within(points, limits / size, along, kind)
+        found = _within((points, limits / size), along, kind)
         if found is not None:
             share, q = found
             return f"{_said(kind, q, middle, axes, size)} is within {share:.2f} of the tolerances"
@@ -101,34 +118,39 @@ def _terms(kind: str, p: Floats) -> tuple[Floats, Floats, Floats]:
 
 
 def _within(
-    points: Floats, limits: Floats, along: Floats | None, kind: str
+    data: tuple[Floats, Floats], along: Floats | None, kind: str
 ) -> tuple[float, Floats] | None:
     """The coefficients of a curve within the tolerances, with the largest share of these."""
+    # Of very many points some are fitted, and all are compared.
+    every = -(-len(data[0]) // _MOST_FITTED)
+    points, limits = (each[::every] for each in data)
     terms, by_x, by_y = _terms(kind, points)
     if len(points) < terms.shape[1] - 1 + _SPARE:
         return None
-    finite = np.isfinite(limits)
-    weights, slope = np.where(finite, 1.0, 0.0), np.ones(len(points))
+    weights, slope = np.ones(len(points)), np.ones(len(points))
     best: tuple[float, Floats] | None = None
-    for _ in range(_ROUNDS):
-        rows = terms * (np.sqrt(weights) / (slope * np.where(finite, limits, 1.0)))[:, None]
+    for k in range(_ROUNDS):
+        rows = terms * (np.sqrt(weights) / (slope * limits))[:, None]
         q = np.linalg.svd(rows, full_matrices=False)[2][-1]
         gradient = np.stack([by_x @ q, by_y @ q], 1)
         slope = np.linalg.norm(gradient, axis=1) if along is None else np.abs(gradient @ along)
         slope = np.maximum(slope, 1e-9 * slope.max())
-        share = np.where(finite, np.abs(terms @ q) / (slope * limits), 0.0)
+        share = np.abs(terms @ q) / (slope * limits)
         if best is None or share.max() < best[0]:
             best = (float(share.max()), q)
-        if share.max() == 0.0:
+        # Weighted means are no larger than the least largest distance, once slopes are known.
+        least = float(np.sqrt((weights * share**2).sum() / weights.sum()))
+        if share.max() == 0.0 or (k >= _SLOPES and (least > 1.0 or best[0] <= _NEAR * least)):
             break
         weights = weights * share
         weights /= weights.max()
     if best is None or best[0] > 1.0:
         return None
+    points, limits = data
     feet = _feet(kind, best[1], points, along)
     if feet is None or not _in_order(kind, best[1], feet, limits):
         return None
-    share = np.linalg.norm(feet - points, axis=1)[finite] / limits[finite]
+    share = np.linalg.norm(feet - points, axis=1) / limits
     return (float(share.max()), best[1]) if share.max() <= 1.0 else None
 
 
@@ -139,14 +161,18 @@ def _feet(kind: str, q: Floats, points: Floats, along: Floats | None) -> Floats 
         terms, by_x, by_y = _terms(kind, at)
         gradient = np.stack([by_x @ q, by_y @ q], 1)
         value = terms @ q
+        # Of a point that no direction leads from.
+        least = np.finfo(float).tiny
         if along is not None:
-            step = -(value / (gradient @ along))[:, None] * along
+            slope = gradient @ along
+            slope[slope == 0.0] = least
+            step = -(value / slope)[:, None] * along
         else:
-            square = (gradient**2).sum(axis=1)
+            square = np.maximum((gradient**2).sum(axis=1), least)
             off = points - at
             across = ((off * gradient).sum(axis=1) / square)[:, None] * gradient
             step = off - across - (value / square)[:, None] * gradient
-        if not np.isfinite(step).all():
+        if not np.abs(step).max() < _FAR:
             return None
         at = at + step
         if np.abs(step).max() < 1e-13:
@@ -156,6 +182,11 @@ def _feet(kind: str, q: Floats, points: Floats, along: Floats | None) -> Floats 
 
 def _in_order(kind: str, q: Floats, feet: Floats, limits: Floats) -> bool:
     """True if the feet follow each other along one branch, up to steps within the tolerances."""
+    usual = float(np.median(np.linalg.norm(np.diff(feet, axis=0), axis=1)))
+    every = int(min(1 + 3 * limits.max() // max(usual, np.finfo(float).tiny), len(feet)))
+    feet, limits = feet[::every], limits[::every]
+    if len(feet) < 3:
+        return False
     _, by_x, by_y = _terms(kind, feet)
     tangent = np.stack([-(by_y @ q), by_x @ q], 1)
     tangent /= np.linalg.norm(tangent, axis=1)[:, None]

@@ -60,3 +60,18 @@ def test_points_that_move_one_way_and_rings():
     points = noisy(np.column_stack([np.cos(ring), np.sin(ring)]), 0.006, 0)
     faired = fair(points, 0.006, closed=True)
     assert faired.after.pieces > 1 and any(n.startswith("a circle") for n in faired.notes)
+
+
+@pytest.mark.filterwarnings("error")
+def test_points_without_limit_and_degenerate_lists():
+    points = noisy(CURVES["a circle"], 0.01, 0)
+    points[10] += 0.5
+    notes = fair(points, 0.01, release=[10]).notes
+    assert any(n.startswith("a circle") for n in notes)
+    for tol in (None, np.where(np.arange(21) < 18, np.inf, 0.01)):
+        assert not any("of the tolerances" in n for n in fair(points, tol).notes)
+    spike = np.column_stack([T, np.where(np.arange(21) == 10, 0.3, 0.0)])
+    for points in (spike, spike[:, ::-1], np.column_stack([T, T**9])):
+        for motion in ("ball", (0, 1)):
+            if motion == "ball" or (np.diff(points[:, 0]) > 0).all():
+                fair(points, 0.2, motion=motion)
