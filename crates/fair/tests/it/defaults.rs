@@ -156,11 +156,7 @@ const RINGS: [Form; 4] = [
     ("circle", |t| [(TURN * t).cos(), (TURN * t).sin()], 1e-3),
     ("oval", |t| [2.0 * (TURN * t).cos(), (TURN * t).sin()], 1e-3),
     ("egg", |t| [2.0 * (TURN * t).cos(), (TURN * t).sin() * (1.0 + 0.3 * (TURN * t).cos())], 1e-3),
-    (
-        "bean",
-        |t| [2.0 * (TURN * t).cos(), (TURN * t).sin() - 0.9 * (TURN * t).cos().powi(2)],
-        1e-3,
-    ),
+    ("bean", |t| [2.0 * (TURN * t).cos(), (TURN * t).sin() - 0.9 * (TURN * t).cos().powi(2)], 1e-3),
 ];
 const TURN: f64 = std::f64::consts::TAU;
 
