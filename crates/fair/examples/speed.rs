@@ -1,13 +1,14 @@
 //! Times of fairing by size: `cargo run --release -p moldloft-fair --example speed [points]`; of
 //! data under tolerances alone with `data` before the size; of the default of points on known shapes,
 //! report and all, with `near` (and of one of them with its name after the size); at each tolerance of
-//! a slider with `slide`.
+//! a slider with `slide`; of points that move along one direction with `along`; of a hull's 30 lines with `hull`.
 
 use moldloft_fair::{
     Bound, CurveRequest, Data, DataOptions, EndContinuity, Goal, InterpolationSpace, Job,
-    KnotRemovalOptions, Limit, Measure, Motion, Network, OptimumOptions, ParameterSpacing, Space,
-    certified, curvature_parameters, data_report, fair_data, knot_removal, near_budget, optimum,
-    parameters, shape, sweeps, thinned,
+    KnotRemovalOptions, Limit, Measure, Motion, NETWORK_BUDGET, Network, NetworkCurve, NetworkMode,
+    OptimumOptions, ParameterSpacing, Space, certified, curvature_parameters, data_report,
+    fair_data, knot_removal, near_budget, optimum, parameters, parameters_across, shape, sweeps,
+    thinned,
 };
 use moldloft_num::Vec3;
 use std::time::{Duration, Instant};
@@ -322,6 +323,84 @@ fn slide(n: usize) {
     }
 }
 
+/// A half sine whose ordinates have noise, and its default where points move along y.
+fn along(n: usize) {
+    for noise in [1e-2, 1e-4] {
+        let mut unit = random();
+        let exact = |x: f64| 2.0 * (std::f64::consts::PI * x / 10.0).sin();
+        let points: Vec<Vec3<f64>> = (0..n)
+            .map(|i| 10.0 * i as f64 / (n - 1) as f64)
+            .map(|x| Vec3::of(x, exact(x) + 2.0 * noise * unit(), 0.0))
+            .collect();
+        let mut request = CurveRequest::of(&points, noise);
+        request.motion = Motion::Along(Vec3::of(0.0, 1.0, 0.0));
+        let start = Clock::start();
+        let made = request.curve(&points).expect("the points are good");
+        let fair = start.elapsed();
+        let told = made.report().expect("the curve is good");
+        let space = &made.data.layout.space;
+        let (from, to) = space.domain();
+        let square = |k: u32| {
+            let t = from + (to - from) * f64::from(k) / 2000.0;
+            let p = shape::sample_at(space, &made.fit.points, None, t).point;
+            (p.y - exact(p.x)).powi(2)
+        };
+        let off = ((0..=2000).map(square).sum::<f64>() / 2001.0).sqrt() / noise;
+        println!(
+            "{n} along y, noise {noise}: {} control points, {off:.3} of the noise off, inflections {}, pieces {}, \
+             gap {:.1e}; {fair:.1?}, with its report {:.1?}",
+            made.fit.points.len(),
+            told.after.inflections,
+            told.after.pieces,
+            made.fit.certificate.relative(),
+            start.elapsed()
+        );
+    }
+}
+
+/// A round hull of 20 stations and 10 waterlines, read to 0.02, at tolerances from 0.3 to 3 noises.
+fn hull() {
+    const NOISE: f64 = 0.02;
+    let mut unit = random();
+    let (m, n) = (20, 10);
+    let mut points = Vec::new();
+    for (i, j) in (0..m).flat_map(|i| (0..n).map(move |j| (i, j))) {
+        let (x, z) = (i as f64 / (m - 1) as f64, j as f64 / (n - 1) as f64);
+        let y = (1.0 - (2.0 * x - 1.0).abs().powi(3)) * (1.0 - (1.0 - z).powi(2)).powf(0.75);
+        points.push(Vec3::of(20.0 * x, 2.0 * y + 2.0 * NOISE * unit(), 2.0 * z));
+    }
+    let stations = (0..m).map(|i| (0..n).map(|j| i * n + j).collect::<Vec<_>>());
+    let lists: Vec<_> =
+        stations.chain((0..n).map(|j| (0..m).map(|i| i * n + j).collect())).collect();
+    let way = Motion::Along(Vec3::of(0.0, 1.0, 0.0));
+    for share in [0.3, 0.5, 0.7, 1.0, 1.5, 2.0, 3.0] {
+        let radius = share * NOISE;
+        let line = |own: &Vec<usize>| {
+            let list: Vec<Vec3<f64>> = own.iter().map(|&i| points[i]).collect();
+            let moved = (way, &vec![radius; own.len()][..]);
+            let at = parameters_across(&list, ParameterSpacing::Chord, false, moved);
+            NetworkCurve {
+                space: Space::floating(3, own.len()).expect("the line is long enough"),
+                points: own.clone(),
+                weights: None,
+                marks: Vec::new(),
+                runs: Vec::new(),
+                ends: [EndContinuity::Points(1); 2],
+                at: Some(at.expect("no two in one place")),
+            }
+        };
+        let limit = Limit::new(way, vec![radius; points.len()]).expect("the tolerance is good");
+        let lines = lists.iter().map(line).collect();
+        let network = Network::new(points.clone(), lines, limit).expect("the net is good");
+        for (word, goal) in [("near", Goal::Near(NETWORK_BUDGET)), ("fairest", Goal::Fairest)] {
+            let start = Clock::start();
+            let made = network.report(Measure::Third, NetworkMode::Toward(goal));
+            made.expect("the net is good");
+            println!("hull of 30 lines, {share} noises, {word}: {:.1?}", start.elapsed());
+        }
+    }
+}
+
 fn main() {
     let word = std::env::args().nth(1);
     let sizes = || {
@@ -330,6 +409,14 @@ fn main() {
     };
     if word.as_deref() == Some("slide") {
         return slide(std::env::args().nth(2).and_then(|a| a.parse().ok()).unwrap_or(200));
+    }
+    if word.as_deref() == Some("hull") {
+        return hull();
+    }
+    if word.as_deref() == Some("along") {
+        let one = std::env::args().nth(2).and_then(|a| a.parse().ok());
+        let sizes = one.map_or(vec![1_000, 10_000, 100_000, 1_000_000], |n| vec![n]);
+        return sizes.into_iter().for_each(along);
     }
     if word.as_deref() == Some("near") {
         return sizes().into_iter().for_each(near);

@@ -174,8 +174,8 @@ def fair_curve(
         The points as they were read, when ``points`` were faired already: tolerances are counted
         from these, so that fairing a result again is fairing the original.
     bends
-        True if the curve may have more inflections, and under ``"near"`` more than two monotone
-        pieces of curvature more, than the fairest within the tolerance.
+        True if the curve may have more inflections, and more than two monotone pieces of curvature
+        more, than the fairest within the tolerance.
     count
         Number of control points of a least-squares fit, instead of a curve through all points.
     knots, weights, period

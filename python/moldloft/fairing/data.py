@@ -18,6 +18,7 @@ from moldloft.fairing.conditions import join_conditions, linear_conditions
 from moldloft.fairing.faired import Arc, Fairing
 from moldloft.fairing.findings import order_of
 from moldloft.fairing.report import Finding, Numbers
+from moldloft.fairing.simpler import simpler
 from moldloft.fairing.spline import Spline
 
 if TYPE_CHECKING:
@@ -141,6 +142,13 @@ def fair_data(asked: Data, started: float) -> Fairing:
             f"no curve with knots at the points alone was found with this shape: {count} control "
             "points, with knots between them"
         )
+    after = Numbers(**reported["after"])
+    if not (breaks or asked.shape or conditions or asked.draft):
+        limits = np.array(radii(tol, n))
+        limits[release] = np.inf
+        length = reported["deviation"]["length"]
+        note = simpler(data, limits, (word, np.asarray(way)), after, length)
+        notes += [note] if note else []
     arcs = tuple(Arc(a, b, r, np.asarray(c), off) for (a, b), r, c, off in reported["arcs"])
     notes += [str(arc) for arc in arcs]
     rows = faired(reported["at"])
@@ -166,7 +174,7 @@ def fair_data(asked: Data, started: float) -> Fairing:
         measure=reported["measure"],
         breaks=tuple(breaks),
         before=Numbers(**reported["before"]),
-        after=Numbers(**reported["after"]),
+        after=after,
         deviation_certified=far["certified"],
         deviation_sampled=far["sampled"],
         deviation_control=far["control"],

@@ -128,7 +128,7 @@ class PatchesFairing:
 
 def patches(
     surfaces: Sequence[ArrayLike | SplineSurface],
-    tol: float | None,
+    tol: float | Sequence[ArrayLike] | None,
     *,
     seams: str = "curvature",
     as_: str = "fit",
@@ -149,7 +149,9 @@ def patches(
     surfaces
         Grids ``(m, n, 3)`` or :class:`SplineSurface`, on clamped knots.
     tol
-        Maximum distance that each control point may move; ``None`` for no limit.
+        Maximum distance that each control point may move; ``None`` for no limit. A list has one
+        for each surface, or for each point of it, ``(m, n)``; on a seam the smaller one holds, and
+        points with 0 do not move.
     seams
         Continuity across seams: ``"position"``, ``"tangent"`` or ``"curvature"``. The ratio
         of the speeds of the parameters on both sides is read from the surfaces as they are.
@@ -196,7 +198,7 @@ def patches(
     started = time.perf_counter()
     before: list[SplineSurface] = []
     at: list[tuple[Floats, Floats] | None] = []
-    stays = goal == "near" and tol is not None and tol > 0
+    stays = goal == "near"
     for given in surfaces:
         if isinstance(given, SplineSurface):
             before.append(given)
@@ -213,10 +215,12 @@ def patches(
         else:
             before.append(SplineSurface(data, degree=degree))
             at.append(None)
-    count = sum(s._core.shape[0] * s._core.shape[1] for s in before)
+    limits = _limits(tol, before)
+    most = max(limits)
+    stays = stays and 0 < most < np.inf
     word, way = direction(motion)
     chosen = {
-        "tolerance": radii(tol, count),
+        "tolerance": limits,
         "motion": word,
         "direction": way,
         "rims": _rims(rims),
@@ -230,21 +234,21 @@ def patches(
         "labels": [],
     }
     parts = [s._core for s in before]
-    tries: list[float | None] = [tol]
-    if stays and tol is not None:
+    tries = [most]
+    if stays:
         # Of exact surfaces the smallest move that lets them run on.
         size = max(float(np.abs(s.control_points).max()) for s in before)
         moves = [ROUNDING * size * 8**k for k in range(16)]
-        tries = [*(move for move in moves if move < tol), tol]
+        tries = [*(move for move in moves if move < most), most]
     for least in tries:
-        chosen["tolerance"] = radii(least, count)
+        chosen["tolerance"] = [min(least, limit) for limit in limits]
         try:
             cores, found, reported = _core.Net.joined(parts, seams, chosen)
         except FairingError:
             if least == tries[-1]:
                 raise
             continue
-        if least != tol:
+        if least != most:
             reported["certificate"]["gap"] = reported["certificate"]["value"]
         break
     faired = [SplineSurface._of(core) for core in cores]
@@ -257,7 +261,7 @@ def patches(
         originals=tuple(before),
         seams=tuple(((k, _EDGES[d][e]), (m, _EDGES[f][g])) for (k, d, e), (m, f, g) in found),
         keeps=seams,
-        tol=tol,
+        tol=most if most < np.inf else None,
         as_=as_,
         measure=measure,
         measure_before=reported["measure_before"],
@@ -270,6 +274,16 @@ def patches(
         gap=reported["certificate"]["gap"],
         seconds=seconds,
     )
+
+
+def _limits(tol: Any, surfaces: Sequence[SplineSurface]) -> list[float]:
+    """The tolerances of the control points of all surfaces."""
+    counts = [s._core.shape[0] * s._core.shape[1] for s in surfaces]
+    if not isinstance(tol, (list, tuple)):
+        return radii(tol, sum(counts))
+    if len(tol) != len(surfaces):
+        raise FairingError(f"expected the tolerances of {len(surfaces)} surfaces, found {len(tol)}")
+    return [limit for own, count in zip(tol, counts, strict=True) for limit in radii(own, count)]
 
 
 explain(globals())

@@ -262,6 +262,12 @@ def _facts(
     return _Table([], [[name, value] for name, value in rows], kind="facts")
 
 
+def _apart(before: Spline, after: Spline) -> float:
+    """The largest distance of two curves at equal parameters, sampled on the spans of both."""
+    t = np.union1d(before.samples(12).t, after.samples(12).t)
+    return float(np.linalg.norm(before(t) - after(t), axis=1).max())
+
+
 def _curves(lines: _Lines) -> _Table:
     head = ["curve", "points", "bends before", "after", "pieces before", "after"]
     head += ["largest move", "at", "of its limit", "along the curve", "state"]
@@ -272,8 +278,7 @@ def _curves(lines: _Lines) -> _Table:
         most = int(own[np.argmax(lines.off[own])])
         finite = lines.limits[own]
         reached = int(((lines.off[own] >= _AT_LIMIT * finite) & (finite > 0)).sum())
-        a, b = before.samples(12).points, after.samples(12).points
-        along = float(np.linalg.norm(a - b, axis=1).max()) if a.shape == b.shape else np.nan
+        along = _apart(before, after)
         moved = lines.off[most] > 0
         state = "unmoved" if not moved else "faired"
         if reached:

@@ -52,6 +52,28 @@ def test_patches_run_on_across_their_seam():
             fairing.patches(grids, 0.02, **wrong)
 
 
+def test_patches_have_tolerances_of_their_own():
+    fore, aft = hull()
+    each = np.full(aft.shape[:2], 0.02)
+    each[5:] = 0.002
+    each[5:7, 2:6] = 0.0
+    faired = fairing.patches([fore, aft], [0.04, each], measure="third")
+    moves = [
+        np.linalg.norm(a.control_points - b.control_points, axis=-1)
+        for a, b in zip(faired.surfaces, faired.originals, strict=True)
+    ]
+    assert faired.tol == 0.04 and moves[0][:-1].max() > 0.021
+    assert (moves[1] <= each * (1 + 1e-9)).all() and (moves[1][5:7, 2:6] == 0).all()
+    assert moves[1][:5].max() > 0.01
+    # On the seam the smaller tolerance holds.
+    assert moves[0][-1].max() <= 0.02 * (1 + 1e-9) and max(kink(faired)) < 1e-6
+    same = fairing.patches([fore, aft], [0.02, 0.02], measure="third")
+    assert (same.grids[1] == fairing.patches([fore, aft], 0.02, measure="third").grids[1]).all()
+    for wrong, said in (([0.02], "2 surfaces"), ([0.02, [1, 2]], "one tolerance or")):
+        with pytest.raises(moldloft.errors.FairingError, match=said):
+            fairing.patches([fore, aft], wrong)
+
+
 def test_blocks_of_a_file_are_faired_as_one(cli, tmp_path):
     fore, aft = hull()
     path, out = tmp_path / "hull.p3d", tmp_path / "faired.p3d"

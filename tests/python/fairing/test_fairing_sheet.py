@@ -89,6 +89,16 @@ def test_pdf_has_the_same_content_and_the_same_bytes(tmp_path):
         write_sheet(faired, tmp_path / "a.txt")
 
 
+def test_curves_of_other_knots_have_a_distance():
+    """A shape may ask for knots between the points that the curve before has not."""
+    from moldloft.fairing.sheet import _apart
+
+    at = np.linspace(0, 1, 9)
+    before = fairing.Spline.interpolate(np.column_stack([at, at**2]))
+    after = fairing.Spline.interpolate(np.column_stack([at[::2], at[::2] ** 2 + 0.25]))
+    assert _apart(before, after) == pytest.approx(0.25, abs=0.01)
+
+
 def test_surfaces_have_no_sheet(cli, tmp_path):
     grid = np.stack(np.meshgrid(np.arange(6.0), np.arange(6.0), [0.0], indexing="ij"), -1)[:, :, 0]
     with pytest.raises(Error, match="surfaces"):

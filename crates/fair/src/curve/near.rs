@@ -26,7 +26,7 @@ const PARAMETER_STEPS: usize = 4;
 /// path goes on beyond it.
 const EXCEEDS: f64 = 0.9;
 
-/// Monotone pieces that the curve near its data may have more than the fairest.
+/// Monotone pieces that the curve of a budget may have more than the fairest.
 const MORE_PIECES: f64 = 2.0;
 
 /// Minimum ratio of the fairest curve's squares to the goal's budget, so that the path has a
@@ -44,15 +44,15 @@ const SHAPED_STEPS: usize = 5;
 /// A curve with the spline that it is on, where that is not the data's own.
 pub(super) type Relaid = (Option<InterpolationSpace>, DataFit);
 
-/// Limits of a curve: the counts of the fairest plus some pieces.
+/// Limits of a curve: the counts of the fairest, with [`MORE_PIECES`].
 struct CountLimits(SoftCounts);
 
 impl CountLimits {
     /// Limits from counts of fairest curves.
-    fn of(fairest: &[SoftCounts], more: f64) -> Self {
+    fn of(fairest: &[SoftCounts]) -> Self {
         let least =
             |of: fn(&SoftCounts) -> f64| fairest.iter().map(of).fold(f64::INFINITY, f64::min);
-        let (inflections, pieces) = (least(|c| c.inflections), least(|c| c.pieces) + more);
+        let (inflections, pieces) = (least(|c| c.inflections), least(|c| c.pieces) + MORE_PIECES);
         Self(SoftCounts { inflections, pieces })
     }
 
@@ -62,11 +62,6 @@ impl CountLimits {
         let signs = own.inflections - self.0.inflections;
         signs.max(own.pieces - self.0.pieces).clamp(0.0, 1.0)
     }
-}
-
-/// Monotone pieces allowed beyond those of the fairest; unlimited for goals other than `near`.
-fn more_pieces(goal: Goal) -> f64 {
-    if matches!(goal, Goal::Near(_)) { MORE_PIECES } else { f64::INFINITY }
 }
 
 /// The same data at the lengths, where their parameters follow the turns; both lists of parameters,
@@ -264,7 +259,7 @@ impl Data {
             None => counter.soft(&calm.points, LATE),
         };
         let both = [least_bent, counter.soft(&fairest.points, LATE)];
-        let limits = CountLimits::of(&both, more_pieces(options.goal));
+        let limits = CountLimits::of(&both);
         let pull = self.pull(&parts);
         let mean = (pull.len() as f64 / 3.0).max(f64::MIN_POSITIVE);
         let own = match options.goal {
@@ -337,10 +332,9 @@ impl Data {
         if !allowed(BendCounts::of(&calm).pieces) {
             return self.under_shape(options, job);
         }
-        let mut limits =
-            CountLimits::of(&[counter.soft(&fairest.points, LATE)], more_pieces(options.goal));
+        let mut limits = CountLimits::of(&[counter.soft(&fairest.points, LATE)]);
         let counts = BendCounts::of(&calm);
-        let mut most = counts.pieces as f64 + more_pieces(options.goal);
+        let mut most = counts.pieces as f64 + MORE_PIECES;
         if let Some(asked) = asked.map(|asked| asked as f64) {
             most = most.min(asked);
             limits.0.pieces = limits.0.pieces.min(asked);
