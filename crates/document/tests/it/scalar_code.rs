@@ -364,7 +364,7 @@ fn code_does_what_the_interpreter_does() {
 }
 
 /// Programs with something of their own: each was written for a rule of the language.
-const PROGRAMS: [&str; 15] = [
+const PROGRAMS: [&str; 17] = [
     // A fault in the middle of a call, of a loop, of a recursion.
     "float s = 0; farray a[3]; function float f(float k) { a[k] = k; return 1/(3 - k); } for (k = 1:5) s += f(k);",
     "function float f(float n) { if (n < 1) return sqrt(-1); return f(n - 1) + 1; } float s = 0; for (k = 1:3) s += f(k);",
@@ -390,6 +390,10 @@ const PROGRAMS: [&str; 15] = [
     // Texts: of the file, of a routine, by reference, of a loop's own; joined with a number, and by a pattern that is wrong.
     "string t = \"a\", u; int n = 0; function float size(string own) { t += own; string more; more = own + t; if (more == \"aaa\") return 1; return 2; } for (k = 1:4) { string w = format(\"%d\", k); u = w + t; n += size(w); if (u > w) t = u; u += \"x\"; string v = t + k; v = v + w; w = format(\"%d\", k/2); string r = format(\"%q\", k) + t; }",
     "string names[2] = {\"x\", \"y\"}, t; subroutine longer(returned string own) { own += own; own = own + \"e\"; } for (k = 1:5) { longer(t); foreach (w in names) { t += w; if (w == t or t != \"\") t = w; } t = names[k]; float z = t == k; if (not t) t = 3; t -= w; }",
+    // Texts that are joined with themselves and from both sides, sums that no int holds, `if` and `while` in every order.
+    "string t = \"a\", u = \"b\"; int n = 9007199254740000, k = 0; while (k < 4) { k += 1; t = u + t; t += t; u = t; t = (t + u) + u; string own = u + t; own += own; if (k > 1) n += 500; if (k > 2) n += 0.5; else if (t > u) k += 0; while (n < k) n += 1; }",
+    // `foreach` in calls of itself, left and changed while it runs.
+    "farray a = {1, 2, 3}; curve c = {a, 2*a, a}; vector v; float s = 0; function float inner(farray q, float d) { float t = 0; foreach (x in q) { if (d > 0) t += inner(q, d - 1); t += x/(x - 2); } return t; } for (k = 1:2) { foreach (p in c) { v += p; foreach (x in a) { s += x; a[1] = s; if (x > 2) break; s += inner(a, 1); } } }",
     // Subscripts of subscripts, and which fault comes first.
     "farray a[3] = 1, b[3,3] = 2; float s = 0; for (k = 1:5) { s += b[k, a[k/2]]; s += b[9, 1/0]; a[a[k]*4] = b[1/0, k]; farray q[0, 1/0]; }",
 ];

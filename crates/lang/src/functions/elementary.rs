@@ -1,7 +1,7 @@
 //! Elementary functions, as rows: element by element over numbers and rows of numbers.
 
 use crate::value::blocks;
-use crate::value::variables::Called as _;
+use crate::value::variables::{Called as _, ROUNDS};
 use moldloft_num::{Real, Vec3, log10, modulo, whole_quotient};
 use moldloft_registry::export::field_id;
 use moldloft_registry::{
@@ -356,8 +356,6 @@ fn step<T: Real>(x: T, f: fn(f64) -> f64) -> T {
 /// The remainder of small positive integers, several times faster than the general one.
 #[inline(always)]
 pub fn small_remainder(a: f64, b: f64) -> Option<f64> {
-    /// Adding it and taking it away rounds to a whole number, up to 2^51.
-    const ROUNDS: f64 = 6_755_399_441_055_744.0;
     const MOST: f64 = 1_073_741_824.0;
     let rounded = |x: f64| (x + ROUNDS) - ROUNDS;
     let small = |x: f64| x > 0.0 && x < MOST && rounded(x) == x;

@@ -56,7 +56,7 @@ fn elements<'v, T: Real>(value: &'v Value<T>, op: &str) -> Result<Elements<'v, T
 }
 
 /// The longest text that a program may make: as long as the longest program.
-const LONGEST_TEXT: usize = 64 << 20;
+pub(crate) const LONGEST_TEXT: usize = 64 << 20;
 
 pub(crate) fn shapes_differ(a: ArrayShape, b: ArrayShape) -> Diagnostic {
     Diagnostic::error("shapes-differ", format!("shapes differ: {a} and {b}"))

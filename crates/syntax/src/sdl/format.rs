@@ -3,7 +3,7 @@
 //! The formatter changes the blanks between tokens, never the tokens, with three exceptions that keep the meaning:
 //! empty statements are dropped, numbers get a digit on both sides of their point, and parentheses are added where set
 //! operators group otherwise than numbers would. Line breaks inside a statement stay where the author put them; longer
-//! lines are broken behind commas.
+//! lines are broken behind commas, and before the signs and the logical operators of an expression.
 
 use super::parser::version::refused;
 use super::parser::{SourceLayout, TokenRole, parse_marked};
@@ -13,7 +13,7 @@ use std::sync::Arc;
 
 const INDENT: usize = 4;
 
-/// Lines are broken behind a comma before they are longer than this, in characters.
+/// Lines are broken behind a comma or before an operator where they would be longer than this, in characters.
 const MAX_LINE: usize = 120;
 
 /// The canonical text of a program: one statement per line, blocks indented by four blanks, with
@@ -240,7 +240,7 @@ impl<'a> Writer<'a> {
             } else {
                 self.indent(closing);
             }
-        } else if self.is_too_long(at) {
+        } else if self.is_too_long(at, breaks_before(token, role)) {
             self.new_line();
             self.indent(closing);
         } else if blank_between(self.last, token, role) {
@@ -248,10 +248,11 @@ impl<'a> Writer<'a> {
         }
     }
 
-    /// True after a comma in brackets if the line is too short for the text up to the next comma.
-    fn is_too_long(&self, at: usize) -> bool {
+    /// True after a comma in brackets if the line is too short for the text up to the next comma, and before an
+    /// operator if it is too short for the text up to the next one.
+    fn is_too_long(&self, at: usize, operator: bool) -> bool {
         let comma = self.last.is_some_and(|(last, _)| last.kind == Kind::Comma);
-        if !comma || self.brackets.is_empty() {
+        if !(operator || comma && !self.brackets.is_empty()) {
             return false;
         }
         let line = self.out.rfind('\n').map_or(0, |k| k + 1);
@@ -260,7 +261,8 @@ impl<'a> Writer<'a> {
         // Canonical widths, so that canonical text is measured alike.
         for k in at..self.layout.tokens.len() {
             let (token, role) = (self.layout.tokens[k], self.layout.roles[k]);
-            if k > at && token.new_line {
+            if k > at && (token.new_line || (operator && depth <= 0 && breaks_before(token, role)))
+            {
                 break;
             }
             depth += i32::from(opens(token, role)) - i32::from(closes(token, role));
@@ -279,7 +281,26 @@ impl<'a> Writer<'a> {
                 break;
             }
         }
-        width > MAX_LINE
+        width > MAX_LINE && !(operator && self.is_in_subscript(at))
+    }
+
+    /// True if the innermost bracket that is open before a token is that of a subscript.
+    fn is_in_subscript(&self, at: usize) -> bool {
+        let mut closed = 0;
+        for k in (0..at).rev() {
+            let (token, role) = (self.layout.tokens[k], self.layout.roles[k]);
+            if closes(token, role) {
+                closed += 1;
+            } else if opens(token, role) {
+                if closed == 0 {
+                    return token.kind == Kind::LBracket;
+                }
+                closed -= 1;
+            } else if token.kind == Kind::Semi {
+                break;
+            }
+        }
+        false
     }
 
     fn token(&mut self, token: Token, role: TokenRole) {
@@ -321,6 +342,12 @@ fn closes(token: Token, role: TokenRole) -> bool {
     role != TokenRole::BlockClose
         && (matches!(token.kind, Kind::RParen | Kind::RBracket | Kind::RBrace)
             || (token.kind == Kind::Pipe && role == TokenRole::Close))
+}
+
+/// True for an operator before which a long line is broken.
+fn breaks_before(token: Token, role: TokenRole) -> bool {
+    role == TokenRole::Infix
+        && matches!(token.kind, Kind::Plus | Kind::Minus | Kind::And | Kind::Or | Kind::AmpAmp)
 }
 
 /// True if a line break of the source before this token is kept.
@@ -446,6 +473,19 @@ mod tests {
             "{once}"
         );
         let short = format!("BCurve keel({{{}}});\n", [point; 4].join(", "));
+        assert_eq!(formatted(&short), short);
+    }
+
+    #[test]
+    fn long_expressions_are_broken_before_operators() {
+        let term = "coefficient[i, j] * (first - second)^2";
+        let text = format!("a = {};", [term; 9].join(" + "));
+        let once = formatted(&text);
+        assert!(once.lines().all(|line| line.len() <= MAX_LINE), "{once}");
+        assert!(once.lines().skip(1).all(|line| line.starts_with("    + coefficient")), "{once}");
+        let text = format!("if ({}) a = 1;", ["x[i] < -1 || y > f(x, y)"; 9].join(" and "));
+        assert!(formatted(&text).lines().all(|line| line.len() <= MAX_LINE));
+        let short = format!("a = {};\n", [term; 2].join(" + "));
         assert_eq!(formatted(&short), short);
     }
 

@@ -1,5 +1,6 @@
 //! Code of a region: operations on registers, and their source positions.
 
+use super::registers::UNDECLARED;
 use crate::functions::elementary::Elementary;
 use crate::functions::format::FormatPattern;
 use crate::source::module::{Module, Name, RoutineAt};
@@ -10,30 +11,31 @@ use moldloft_syntax::sdl::{ExprId, StmtId, Symbol, Type};
 use smallvec::SmallVec;
 use std::sync::Arc;
 
-/// Order relation of a condition.
+/// Order relation of a condition: the set of the orders of two values for which it holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u8)]
 pub(super) enum Relation {
-    Lt,
-    Gt,
-    Le,
-    Ge,
-    Eq,
-    Ne,
+    Lt = 1,
+    Gt = 2,
+    Eq = 4,
+    Le = 5,
+    Ge = 6,
+    /// Also of values without an order.
+    Ne = 11,
 }
 
 impl Relation {
+    /// Compares without a branch.
     #[inline(always)]
     pub fn holds<V: PartialOrd>(self, a: V, b: V) -> bool {
-        match self {
-            Relation::Lt => a < b,
-            Relation::Gt => a > b,
-            Relation::Le => a <= b,
-            Relation::Ge => a >= b,
-            Relation::Eq => a == b,
-            Relation::Ne => a != b,
-        }
+        let (less, greater, equal) = (u8::from(a < b), u8::from(a > b), u8::from(a == b));
+        let none = 1 - (less | greater | equal);
+        self as u8 & (less | greater << 1 | equal << 2 | none << 3) != 0
     }
 }
+
+/// The marks that a call copies in one piece.
+pub(super) const FEW: usize = 4;
 
 /// Set in the number of an array: it is one of the file's, not of the call's.
 pub(super) const OF_FILE: u16 = 1 << 15;
@@ -46,6 +48,14 @@ pub(super) enum ScalarOp {
     Step(u16),
     /// A statement begins, and the next operation does it for the statement that follows.
     Steps(u16),
+    /// `if`, as the next two operations do it: a condition, and a statement that follows if it holds.
+    Branch {
+        statement: u16,
+        relation: Relation,
+        a: u16,
+        b: u16,
+        to: u16,
+    },
     Copy {
         to: u16,
         a: u16,
@@ -59,6 +69,13 @@ pub(super) enum ScalarOp {
         to: u16,
         a: u16,
         b: u16,
+    },
+    /// `to = a + b` and, as the next operation would do it, its conversion to an integer.
+    AddThenWhole {
+        to: u16,
+        a: u16,
+        b: u16,
+        whole: u16,
     },
     Sub {
         to: u16,
@@ -236,6 +253,11 @@ pub(super) enum ScalarOp {
         to: u16,
         a: u16,
     },
+    /// The two change places.
+    MoveText {
+        to: u16,
+        a: u16,
+    },
     JoinTexts {
         to: u16,
         a: u16,
@@ -281,6 +303,16 @@ pub(super) enum ScalarOp {
     ForBegin {
         at: u16,
     },
+    /// The condition of a `while`, and its turn: that of the next two operations.
+    WhileTest {
+        relation: Relation,
+        a: u16,
+        b: u16,
+        exit: u16,
+    },
+    WhileNext {
+        test: u16,
+    },
     /// The number of the iteration is kept if it may be read.
     ForTest {
         at: u16,
@@ -296,20 +328,19 @@ pub(super) enum ScalarOp {
     },
     /// A `foreach` begins: it walks through the elements that the array has now, which stay in an array of its own.
     WalkBegin {
-        at: u16,
         array: u16,
         from: u16,
     },
+    /// The numbers of the turn are put into the registers from `at`, unless it is `NO_LABEL`.
     WalkTest {
         at: u16,
         array: u16,
         variable: u16,
+        register: u16,
         origin: u16,
         exit: u16,
-        kept: bool,
     },
     WalkNext {
-        at: u16,
         test: u16,
     },
     WalkEnd {
@@ -320,7 +351,8 @@ pub(super) enum ScalarOp {
         at: u16,
         variable: u16,
     },
-    /// A turn of another loop begins; the register of its name's number, or `NO_LABEL`.
+    /// A turn of another loop begins; its numbers are kept unless `at` is `NO_LABEL`, and `label` is
+    /// the register of its name's number, or `NO_LABEL`.
     Turn {
         at: u16,
         label: u16,
@@ -417,6 +449,16 @@ pub(super) struct CodeSite {
     pub unit: usize,
     pub args: Box<[CodeArgument]>,
     pub valued: bool,
+    pub moves: CallMoves,
+}
+
+/// What a call puts into the registers of the called unit.
+#[derive(Clone, Debug, Default)]
+pub(super) struct CallMoves {
+    /// From which register to which.
+    pub numbers: Box<[(u16, u16)]>,
+    /// From which array to which, and the number of the formal argument.
+    pub arrays: Box<[(u16, u16, u16)]>,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -533,8 +575,10 @@ pub(super) struct CodeUnit<T: Real> {
     pub formals: Vec<Option<Poisonable>>,
     /// The formal arguments that are variables of the file: their names, declarations, and whose they are.
     pub references: Vec<(Name, Span, Name)>,
-    /// Registers at the start of a call: constants.
-    pub template: Vec<T>,
+    /// The number of registers of a call.
+    pub registers: usize,
+    /// Registers with a value at the start of a call.
+    pub constants: Vec<(u16, T)>,
     pub sites: Vec<CodeSite>,
     pub formats: Vec<CodeFormat>,
     pub kernels: Vec<ArrayKernel<T>>,
@@ -551,6 +595,8 @@ pub(super) struct CodeUnit<T: Real> {
     pub statements: Vec<(usize, StmtId)>,
     /// The marks of the variables when a call begins.
     pub marks: Vec<u32>,
+    /// The first of them.
+    pub few_marks: [u32; FEW],
     /// The type of the value that the routine returns.
     pub result: Option<Type>,
 }
@@ -568,7 +614,8 @@ impl<T: Real> CodeUnit<T> {
             arrays: Vec::new(),
             formals: Vec::new(),
             references: Vec::new(),
-            template: Vec::new(),
+            registers: 0,
+            constants: Vec::new(),
             sites: Vec::new(),
             formats: Vec::new(),
             kernels: Vec::new(),
@@ -579,6 +626,7 @@ impl<T: Real> CodeUnit<T> {
             unfixed: Vec::new(),
             statements: Vec::new(),
             marks: Vec::new(),
+            few_marks: [UNDECLARED; FEW],
         }
     }
 

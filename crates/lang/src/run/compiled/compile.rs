@@ -5,8 +5,8 @@
 //! again.
 
 use super::code::{
-    ActiveLoop, Captured, CodeNote, CodeRange, CodeRegion, CodeSite, CodeUnit, Generation,
-    NO_LABEL, NamePlace, Poisonable, RegionStart, Relation, ScalarOp,
+    ActiveLoop, CallMoves, Captured, CodeArgument, CodeNote, CodeRange, CodeRegion, CodeSite,
+    CodeUnit, Generation, NO_LABEL, NamePlace, Poisonable, RegionStart, Relation, ScalarOp,
 };
 use super::names::{Meaning, ids};
 use super::registers::{UNDECLARED, declared_by};
@@ -57,7 +57,7 @@ pub(super) struct UnitProgress<T> {
     free_vectors: Vec<u16>,
     taken_vectors: Vec<u16>,
     free_texts: Vec<u16>,
-    taken_texts: Vec<u16>,
+    pub taken_texts: Vec<u16>,
     registers: u16,
     compiled: usize,
     left: usize,
@@ -127,6 +127,7 @@ pub(super) fn compile<T: Scalar>(
             return None;
         }
         if !compiler.restart {
+            compiler.link();
             let RegionCompiler { units, entry, guards, functions, .. } = compiler;
             return Some(CodeRegion { units, entry, guards, functions, generation });
         }
@@ -194,11 +195,9 @@ impl<T: Scalar> RegionCompiler<'_, T> {
 
     fn finish(&mut self, unit: usize) {
         let progress = &self.progress[unit];
-        let mut template = vec![T::zero(); progress.registers as usize];
-        for (x, register) in &progress.constants {
-            template[*register as usize] = *x;
-        }
-        self.units[unit].template = template;
+        self.units[unit].registers = progress.registers as usize;
+        self.units[unit].constants =
+            progress.constants.iter().map(|&(x, register)| (register, x)).collect();
         let code = &mut self.units[unit];
         code.marks = vec![UNDECLARED; code.variables.len()];
         for (k, formal) in code.formals.iter().enumerate() {
@@ -206,21 +205,38 @@ impl<T: Scalar> RegionCompiler<'_, T> {
                 code.marks[*v as usize] = declared_by(k as u16);
             }
         }
-        let code = &mut self.units[unit].code;
-        for k in 1..code.len() {
-            match (code[k - 1], code[k]) {
-                (ScalarOp::Step(a), ScalarOp::Step(b)) if b == a + 1 => {
-                    code[k - 1] = ScalarOp::Steps(a);
+        for (few, mark) in code.few_marks.iter_mut().zip(&code.marks) {
+            *few = *mark;
+        }
+        super::joins::join(&mut code.code);
+    }
+
+    /// What each call moves, now that all routines have their registers.
+    fn link(&mut self) {
+        for unit in 0..self.units.len() {
+            let mut sites = std::mem::take(&mut self.units[unit].sites);
+            for site in &mut sites {
+                let callee = &self.units[site.unit];
+                let (mut numbers, mut arrays) = (Vec::new(), Vec::new());
+                for (k, (formal, argument)) in callee.formals.iter().zip(&site.args).enumerate() {
+                    let register = |v: u16| callee.variables[v as usize].register;
+                    match (*formal, *argument) {
+                        (None, CodeArgument::OfFile) => {}
+                        (Some(Poisonable::Variable(v)), CodeArgument::Vector { from }) => {
+                            numbers.extend((0..3).map(|c| (from + c, register(v) + c)));
+                        }
+                        (Some(Poisonable::Variable(v)), CodeArgument::Number { from }) => {
+                            numbers.push((from, register(v)));
+                        }
+                        (Some(Poisonable::Array(a)), CodeArgument::Array { from }) => {
+                            arrays.push((from, a, k as u16));
+                        }
+                        _ => unreachable!("arguments are of their formals' kinds"),
+                    }
                 }
-                // The sum stays where it is, for jumps to it and for its faults.
-                (ScalarOp::Mul { to, a, b }, ScalarOp::Add { to: sum, a: x, b: y })
-                    if (x == to) != (y == to) =>
-                {
-                    let c = if x == to { y } else { x };
-                    code[k - 1] = ScalarOp::MulThenAdd { to, a, b, sum, c };
-                }
-                _ => {}
+                site.moves = CallMoves { numbers: numbers.into(), arrays: arrays.into() };
             }
+            self.units[unit].sites = sites;
         }
     }
 
@@ -534,6 +550,7 @@ impl<T: Scalar> RegionCompiler<'_, T> {
             unit: 0,
             args: Box::default(),
             valued: false,
+            moves: CallMoves::default(),
         });
         Ok(at)
     }
@@ -591,10 +608,12 @@ impl<T: Scalar> RegionCompiler<'_, T> {
                 self.forget(&[body])?;
                 let top = self.here()?;
                 let exits = self.condition(id, condition)?;
-                self.emit(ScalarOp::Turn { at, label: NO_LABEL })?;
+                let sites = self.units[self.unit].sites.len();
+                let turn = self.emit(ScalarOp::Turn { at, label: NO_LABEL })?;
                 self.looped(at, false, body, None, |this| {
                     this.emit(ScalarOp::Jump { to: top }).map(drop)
                 })?;
+                self.unless_read(turn, sites);
                 self.land_all(&exits)?;
                 self.breaks_here()
             }
@@ -637,10 +656,12 @@ impl<T: Scalar> RegionCompiler<'_, T> {
                     self.emit(ScalarOp::Label { at, variable })?;
                 }
                 let copied = if sure { label } else { NO_LABEL };
-                self.emit(ScalarOp::Turn { at, label: copied })?;
+                let sites = self.units[self.unit].sites.len();
+                let turn = self.emit(ScalarOp::Turn { at, label: copied })?;
                 self.looped(at, label != NO_LABEL, body, step, |this| {
                     this.emit(ScalarOp::Jump { to: top }).map(drop)
                 })?;
+                self.unless_read(turn, sites);
                 self.land_all(&exits)?;
                 self.breaks_here()
             }
@@ -685,7 +706,18 @@ impl<T: Scalar> RegionCompiler<'_, T> {
         }
     }
 
-    fn label_registers(&mut self) -> u16 {
+    /// The numbers of turns are kept only for calls and for the interpreter: `sites` were there before the loop's body.
+    fn unless_read(&mut self, turn: usize, sites: usize) {
+        let unit = &mut self.units[self.unit];
+        if unit.sites.len() == sites
+            && let ScalarOp::Turn { at, label } = &mut unit.code[turn]
+        {
+            (*at, *label) = (NO_LABEL, NO_LABEL);
+        }
+    }
+
+    /// The registers of the number of a loop in names, and of its turn.
+    pub fn label_registers(&mut self) -> u16 {
         let at = self.register(self.unit);
         self.register(self.unit);
         at

@@ -1,11 +1,10 @@
 //! The machine that executes code.
 
-use super::code::{CodeNote, CodeRegion, CodeUnit, NO_LABEL, OF_FILE, ScalarOp};
+use super::code::{CodeRegion, CodeUnit, NO_LABEL, OF_FILE, Relation, ScalarOp};
 use super::registers::{
     ArrayItems, ArrayRegister, RegisterMachine, UNDECLARED, declaration, declared_by, is_live,
 };
-use super::texts::formatted;
-use crate::array::lanes::not_finite;
+use super::texts::{ArraysByNumber, formatted};
 use crate::functions::elementary::{Elementary, small_remainder};
 use crate::run::interpreter::{Flow, Interpreter, MOST_CALLS, silent};
 use crate::run::usage;
@@ -15,7 +14,8 @@ use crate::value::variables::{self, is_no_int};
 use moldloft_diag::Diagnostic;
 use moldloft_num::{Real, Vec3};
 use moldloft_registry::{ArrayShape, Scalar, Value};
-use moldloft_syntax::sdl::{StmtKind, Type};
+use moldloft_syntax::sdl::Type;
+use std::cmp::Ordering;
 
 /// Number of steps between checks of limits.
 const STEPS_BETWEEN_LOOKS: u64 = 256;
@@ -156,7 +156,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             let ops = &code.code[..];
             let executed = &mut machine.executed[machine.unit][..];
             let (file, own) = machine.registers.split_at_mut(machine.first);
-            let own = &mut own[..code.template.len()];
+            let own = &mut own[..code.registers];
             let (marks_of_file, marks) = machine.marks.split_at_mut(machine.first_mark);
             let (arrays_of_file, arrays) = machine.arrays.split_at_mut(machine.first_array);
             let mut pc = machine.pc;
@@ -218,6 +218,11 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                     at!($to) = x;
                 }};
             }
+            macro_rules! by_number {
+                () => {
+                    ArraysByNumber { own: arrays, of_file: arrays_of_file }
+                };
+            }
             // A step is counted once it is certain that the run may continue.
             macro_rules! step {
                 () => {{
@@ -227,8 +232,8 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                     now += 1;
                 }};
             }
-            // The first statement of a turn.
-            macro_rules! first_statement {
+            // A statement that follows.
+            macro_rules! next_statement {
                 () => {
                     if let ScalarOp::Step(statement) = ops[pc]
                         && now + 1 < look_at
@@ -238,6 +243,18 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                         pc += 1;
                     }
                 };
+            }
+            macro_rules! while_test {
+                ($relation:expr, $a:expr, $b:expr, $exit:expr) => {{
+                    if !$relation.holds(at!($a).re(), at!($b).re()) {
+                        pc = $exit as usize;
+                    } else if now + 1 < look_at {
+                        now += 1;
+                        turned += 1;
+                        pc += 1;
+                        next_statement!();
+                    }
+                }};
             }
             macro_rules! for_test {
                 ($at:expr, $variable:expr, $register:expr, $origin:expr, $exit:expr, $kept:expr) => {{
@@ -254,31 +271,44 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                             at!(at + 4) = x;
                             at!(at + 5) = T::from(turned as f64);
                         }
-                        first_statement!();
+                        next_statement!();
                     } else {
                         pc = $exit as usize;
                     }
                 }};
             }
             macro_rules! walk_test {
-                ($at:expr, $array:expr, $variable:expr, $origin:expr, $exit:expr, $kept:expr) => {{
-                    let at = $at;
-                    let k = at!(at).re();
-                    if k < at!(at + 1).re() {
-                        let (walked, k) = (&arrays[$array as usize], k as usize);
-                        let register = code.variables[$variable as usize].register;
-                        match code.arrays[$array as usize].ty {
-                            Type::Farray => at!(register) = walked.read()[k],
-                            _ => three!(register).copy_from_slice(&walked.vector(k)),
+                ($at:expr, $array:expr, $variable:expr, $register:expr, $origin:expr, $exit:expr) => {{
+                    let walked = &mut arrays[$array as usize];
+                    let (k, to) = (walked.turn, $register as usize);
+                    let goes_on = match &walked.items {
+                        ArrayItems::Shared(array) => match array.items.get(k) {
+                            Some(&x) => {
+                                own[to] = x;
+                                true
+                            }
+                            None => false,
+                        },
+                        ArrayItems::SharedVectors(array) => {
+                            let goes_on = k < array.planes[0].len();
+                            if goes_on {
+                                let v = array.planes.each_ref().map(|plane| plane[k]);
+                                own[to..to + 3].copy_from_slice(&v);
+                            }
+                            goes_on
                         }
+                        _ => false,
+                    };
+                    if goes_on {
                         marks[$variable as usize] = declared_by($origin);
                         step!();
+                        walked.turn = k + 1;
                         turned += 1;
-                        if $kept {
-                            at!(at + 2) = T::from((k + 1) as f64);
-                            at!(at + 3) = T::from(turned as f64);
+                        if $at != NO_LABEL {
+                            at!($at) = T::from((k + 1) as f64);
+                            at!($at + 1) = T::from(turned as f64);
                         }
-                        first_statement!();
+                        next_statement!();
                     } else {
                         pc = $exit as usize;
                     }
@@ -301,11 +331,33 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                             pc += 1;
                         }
                     }
+                    ScalarOp::Branch { statement, relation, a, b, to } => {
+                        executed[statement as usize] = true;
+                        if now + 2 >= look_at {
+                            step!();
+                        } else if relation.holds(at!(a).re(), at!(b).re()) {
+                            executed[statement as usize + 1] = true;
+                            now += 2;
+                            pc += 2;
+                        } else {
+                            now += 1;
+                            pc = to as usize;
+                        }
+                    }
                     ScalarOp::Copy { to, a } => at!(to) = at!(a),
                     ScalarOp::CopyVector { to, a } => {
                         own.copy_within(a as usize..a as usize + 3, to as usize);
                     }
                     ScalarOp::Add { to, a, b } => finite!(to, at!(a) + at!(b)),
+                    ScalarOp::AddThenWhole { to, a, b, whole } => {
+                        finite!(to, at!(a) + at!(b));
+                        let x = at!(to);
+                        // What is no integer is reported by the next operation.
+                        if !is_no_int(x.re()) {
+                            at!(whole) = x;
+                            pc += 1;
+                        }
+                    }
                     ScalarOp::Sub { to, a, b } => finite!(to, at!(a) - at!(b)),
                     ScalarOp::Mul { to, a, b } => finite!(to, at!(a) * at!(b)),
                     ScalarOp::MulThenAdd { to, a, b, sum, c } => {
@@ -373,7 +425,9 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                         }
                     }
                     ScalarOp::JumpIfNot { relation, a, b, to } => {
-                        if !relation.holds(at!(a).re(), at!(b).re()) {
+                        if relation.holds(at!(a).re(), at!(b).re()) {
+                            next_statement!();
+                        } else {
                             pc = to as usize;
                         }
                     }
@@ -468,26 +522,32 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                             shape,
                             known: Known::nothing(count as usize),
                             mark: declared_by(origin),
+                            turn: 0,
                         };
                     }
                     ScalarOp::CopyText { to, a } => {
-                        let text = text!(a).clone();
-                        array!(to).items = ArrayItems::Text(text);
+                        let text = array!(a).shared_text();
+                        array!(to).items = ArrayItems::SharedText(text);
                     }
+                    ScalarOp::MoveText { to, a } => by_number!().exchange(to, a),
                     ScalarOp::JoinTexts { to, a, b } => {
-                        let Some(joined) = ops::joined(text!(a), text!(b)) else { fault!() };
-                        array!(to).items = ArrayItems::Text(joined);
+                        if by_number!().join(to, a, b).is_none() {
+                            fault!();
+                        }
                     }
                     ScalarOp::CompareTexts { relation, to, a, b } => {
-                        let holds = relation.holds(text!(a), text!(b));
+                        let (a, b) = (text!(a), text!(b));
+                        let holds = match relation {
+                            Relation::Eq => a == b,
+                            Relation::Ne => a != b,
+                            _ => relation.holds(a.cmp(b), Ordering::Equal),
+                        };
                         at!(to) = T::from(f64::from(u8::from(holds)));
                     }
                     ScalarOp::FormatText { to, format } => {
                         let format = &code.formats[format as usize];
-                        let Some(text) = formatted(format, own, arrays, arrays_of_file) else {
-                            fault!()
-                        };
-                        array!(to).items = ArrayItems::Text(text);
+                        let Some(text) = formatted(format, own, &by_number!()) else { fault!() };
+                        array!(to).items = ArrayItems::OwnedText(text);
                     }
                     ScalarOp::DeclareText { array, origin } => {
                         array!(array).mark = declared_by(origin);
@@ -525,6 +585,15 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                         at!(at + 1) = T::from(((to - from) / step + 5e-7).floor());
                         at!(at + 3) = T::zero();
                     }
+                    ScalarOp::WhileTest { relation, a, b, exit } => {
+                        while_test!(relation, a, b, exit);
+                    }
+                    ScalarOp::WhileNext { test } => {
+                        pc = test as usize + 1;
+                        if let ScalarOp::WhileTest { relation, a, b, exit } = ops[test as usize] {
+                            while_test!(relation, a, b, exit);
+                        }
+                    }
                     ScalarOp::ForTest { at, variable, register, origin, exit, kept } => {
                         for_test!(at, variable, register, origin, exit, kept);
                     }
@@ -537,22 +606,19 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                             for_test!(at, variable, register, origin, exit, kept);
                         }
                     }
-                    ScalarOp::WalkBegin { at, array, from } => {
+                    ScalarOp::WalkBegin { array, from } => {
                         let walked = array!(from).passed(declared_by(0));
-                        at!(at) = T::zero();
-                        at!(at + 1) = T::from(walked.shape.count() as f64);
                         arrays[array as usize] = walked;
                     }
-                    ScalarOp::WalkTest { at, array, variable, origin, exit, kept } => {
-                        walk_test!(at, array, variable, origin, exit, kept);
+                    ScalarOp::WalkTest { at, array, variable, register, origin, exit } => {
+                        walk_test!(at, array, variable, register, origin, exit);
                     }
-                    ScalarOp::WalkNext { at, test } => {
-                        at!(at) = T::from(at!(at).re() + 1.0);
+                    ScalarOp::WalkNext { test } => {
                         pc = test as usize + 1;
-                        if let ScalarOp::WalkTest { at, array, variable, origin, exit, kept } =
+                        if let ScalarOp::WalkTest { at, array, variable, register, origin, exit } =
                             ops[test as usize]
                         {
-                            walk_test!(at, array, variable, origin, exit, kept);
+                            walk_test!(at, array, variable, register, origin, exit);
                         }
                     }
                     ScalarOp::WalkEnd { array } => {
@@ -569,7 +635,9 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                         if label != NO_LABEL {
                             at!(at) = at!(label);
                         }
-                        at!(at + 1) = T::from(turned as f64);
+                        if at != NO_LABEL {
+                            at!(at + 1) = T::from(turned as f64);
+                        }
                     }
                     ScalarOp::Called => {
                         now += 4;
@@ -588,7 +656,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                     ScalarOp::Return { a } => {
                         let x = at!(a);
                         machine.pc = pc - 1;
-                        if machine.returns_plainly(region, &[x]) {
+                        if machine.returns_plainly(code.result, &[x]) {
                             continue 'call;
                         }
                         leave!(Departure::Return(x))
@@ -596,7 +664,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                     ScalarOp::ReturnVector { a } => {
                         let v = [at!(a), at!(a + 1), at!(a + 2)];
                         machine.pc = pc - 1;
-                        if machine.returns_plainly(region, &v) {
+                        if machine.returns_plainly(code.result, &v) {
                             continue 'call;
                         }
                         leave!(Departure::ReturnVector(v))
@@ -705,7 +773,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         machine.framed = self.env.scope.frames.len() > machine.frames;
         let callee = machine.unit;
         machine.back_to(call);
-        let caller = &region.units[call.unit];
+        let caller = &region.units[call.unit as usize];
         let site = &caller.sites[call.site as usize];
         let callee = &region.units[callee];
         let routine = callee.m.program[callee.routine.expect("a routine was called").routine];
@@ -742,7 +810,9 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                 machine.pc += 1;
                 CodeOutcome::Next
             }
-            None if self.usage.errors > call.errors => self.faulty(region, machine, silent()),
+            None if self.usage.errors > call.errors as usize => {
+                self.faulty(region, machine, silent())
+            }
             _ => {
                 let diagnostic =
                     Diagnostic::error("no-value", format!("`{name}` returns no value"))
@@ -752,129 +822,6 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             }
         }
     }
-
-    /// The fault at the machine's position.
-    #[cold]
-    fn fault(
-        &mut self,
-        region: &CodeRegion<T>,
-        machine: &mut RegisterMachine<T>,
-    ) -> CodeOutcome<T> {
-        let code = &region.units[machine.unit];
-        let at =
-            |machine: &RegisterMachine<T>, r: u16| machine.registers[machine.first + r as usize];
-        let op = code.code[machine.pc];
-        let range = code.range(machine.pc);
-        let diagnostic = match (code.note(machine.pc), op) {
-            (Some(CodeNote::Assignment(stmt)), _) => {
-                let StmtKind::Assign { target, op, value } = code.m.program[stmt].kind else {
-                    unreachable!("an assignment was noted")
-                };
-                match self.interpreted(region, machine, &[], |this| {
-                    this.assign(&code.m, target, op, value)
-                }) {
-                    Ok(()) => {
-                        machine.pc = range.end as usize;
-                        return CodeOutcome::Next;
-                    }
-                    Err(diagnostic) => diagnostic,
-                }
-            }
-            (Some(CodeNote::Finite(name, span)), _) => not_finite(name).at(span),
-            (Some(CodeNote::Expression(expr)), _) => {
-                self.again(region, machine, |this| this.operand(&code.m, expr).map(drop))
-            }
-            (Some(CodeNote::Target(target)), _) => {
-                self.again(region, machine, |this| this.target(&code.m, target).map(drop))
-            }
-            (Some(CodeNote::Declaration(stmt, number)), _) => {
-                let StmtKind::Declare { global, ty, items } = code.m.program[stmt].kind else {
-                    unreachable!("a declaration was noted")
-                };
-                let item = code.m.program[items][number as usize];
-                self.again(region, machine, |this| this.declare(&code.m, stmt, global, ty, &item))
-            }
-            (Some(CodeNote::Name(symbol, span)), op) => {
-                let mark = match op {
-                    ScalarOp::Live { variable } => {
-                        machine.marks[machine.first_mark + variable as usize]
-                    }
-                    ScalarOp::LiveFile { variable } => machine.marks[variable as usize],
-                    ScalarOp::LiveArray { array } => {
-                        let own = machine.first_array + array as usize;
-                        let of_file = (array & !OF_FILE) as usize;
-                        machine.arrays[if array & OF_FILE == 0 { own } else { of_file }].mark
-                    }
-                    _ => UNDECLARED,
-                };
-                match declaration(mark) {
-                    Some(_) => silent(),
-                    None => self.again(region, machine, |this| {
-                        Err(this.unknown_name(&code.m, symbol, span))
-                    }),
-                }
-            }
-            (Some(CodeNote::Convert(span)), _) => {
-                let a = match op {
-                    ScalarOp::Whole { a, .. }
-                    | ScalarOp::WholeFile { a, .. }
-                    | ScalarOp::Assign { a, .. }
-                    | ScalarOp::AssignFile { a, .. } => a,
-                    other => unreachable!("{other:?} converts nothing"),
-                };
-                no_int(at(machine, a)).or_at(span)
-            }
-            (Some(CodeNote::Argument(span, asked)), ScalarOp::Whole { a, .. }) => {
-                no_int(at(machine, a)).or_at(span).note_at(asked, "requested here")
-            }
-            (None, ScalarOp::ForBegin { at: k }) => {
-                let [from, to, step] = [k, k + 1, k + 2].map(|r| at(machine, r).re());
-                Diagnostic::error("endless-loop", "this loop cannot end")
-                    .at(range.span)
-                    .expected("finite ends and a step other than 0")
-                    .found(format!("{from}:{to}:{step}"))
-            }
-            (note, op) => unreachable!("{op:?} has no such fault: {note:?}"),
-        };
-        self.faulty(region, machine, diagnostic)
-    }
-
-    /// The interpreter's diagnostic for the same fault, with all variables handed over.
-    fn again(
-        &mut self,
-        region: &CodeRegion<T>,
-        machine: &mut RegisterMachine<T>,
-        work: impl FnOnce(&mut Self) -> Result<(), Diagnostic>,
-    ) -> Diagnostic {
-        let outcome = self.interpreted(region, machine, &[], work);
-        outcome.expect_err("the interpreter finds the same fault")
-    }
-
-    /// Reports a fault and continues after its statement.
-    fn faulty(
-        &mut self,
-        region: &CodeRegion<T>,
-        machine: &mut RegisterMachine<T>,
-        diagnostic: Diagnostic,
-    ) -> CodeOutcome<T> {
-        let range = region.units[machine.unit].range(machine.pc);
-        self.in_module(region, machine, |this| this.report(diagnostic.or_at(range.fault)));
-        machine.poison(region);
-        if self.env.stopped {
-            return CodeOutcome::Stop;
-        }
-        self.abandoned |= region.units[region.entry].m.library;
-        if self.is_abandoned(region) {
-            return CodeOutcome::Return(None);
-        }
-        machine.pc = range.end as usize;
-        CodeOutcome::Next
-    }
-
-    /// True if an error has ended the active library routines.
-    fn is_abandoned(&self, region: &CodeRegion<T>) -> bool {
-        self.abandoned && region.units[region.entry].m.library
-    }
 }
 
 /// The type of a variable that was declared with different types.
@@ -883,13 +830,5 @@ fn type_by<T: Real>(code: &CodeUnit<T>, variable: u16, mark: u32) -> Type {
         (Some((origin, _)), _) => code.origins[origin].1,
         (None, Some(super::code::Captured::Variable(ty) | super::code::Captured::Passed(ty))) => ty,
         _ => Type::Float,
-    }
-}
-
-/// The error for a number that an int cannot represent.
-fn no_int<T: Real>(x: T) -> Diagnostic {
-    match variables::converted(Type::Int, Value::Number(x)) {
-        Err(diagnostic) => diagnostic,
-        Ok(_) => unreachable!("an int holds it"),
     }
 }

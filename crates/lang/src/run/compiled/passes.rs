@@ -79,7 +79,7 @@ impl<T: Real> ArrayRegister<T> {
     /// The rows of its elements: one of numbers, three of vectors.
     fn rows(&self) -> &[Vec<T>] {
         match &self.items {
-            ArrayItems::Nothing | ArrayItems::Text(_) => &[],
+            ArrayItems::Nothing | ArrayItems::OwnedText(_) | ArrayItems::SharedText(_) => &[],
             ArrayItems::Owned(items) => std::slice::from_ref(items),
             ArrayItems::Shared(array) => std::slice::from_ref(&array.items),
             ArrayItems::OwnedVectors(planes) => planes,

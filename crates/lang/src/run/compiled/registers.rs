@@ -1,6 +1,6 @@
 //! The registers of compiled code, and their exchange with the interpreter's variables.
 
-use super::code::{ActiveLoop, Captured, CodeArgument, CodeRegion, NO_LABEL, OF_FILE, Poisonable};
+use super::code::{ActiveLoop, Captured, CodeRegion, CodeSite, FEW, NO_LABEL, OF_FILE, Poisonable};
 use crate::run::interpreter::{Interpreter, MOST_CALLS};
 use crate::source::module::Name;
 use crate::source::scope::{Binding, CallFrame, LoopIteration, ScopedBinding};
@@ -23,7 +23,8 @@ pub(super) enum ArrayItems<T> {
     /// All x, all y, all z of vectors.
     OwnedVectors([Vec<T>; 3]),
     SharedVectors(Arc<Vectors<T>>),
-    Text(Arc<str>),
+    OwnedText(String),
+    SharedText(Arc<str>),
 }
 
 /// An array of numbers or vectors in code, or a text.
@@ -33,6 +34,8 @@ pub(super) struct ArrayRegister<T> {
     pub shape: ArrayShape,
     pub known: Known,
     pub mark: u32,
+    /// The turn of the `foreach` that walks through it.
+    pub turn: usize,
 }
 
 /// Marks of variables: undeclared, as it was when the region began, or declared by one of the unit's
@@ -64,7 +67,7 @@ pub(super) fn is_live(mark: u32) -> bool {
 impl<T: Real> ArrayRegister<T> {
     pub fn nothing(mark: u32) -> Self {
         let (items, shape) = (ArrayItems::Nothing, ArrayShape::Row(0));
-        Self { items, shape, known: Known::default(), mark }
+        Self { items, shape, known: Known::default(), mark, turn: 0 }
     }
 
     /// The elements, to read.
@@ -79,10 +82,36 @@ impl<T: Real> ArrayRegister<T> {
 
     /// The text.
     #[inline(always)]
-    pub fn text(&self) -> &Arc<str> {
+    pub fn text(&self) -> &str {
         match &self.items {
-            ArrayItems::Text(text) => text,
+            ArrayItems::OwnedText(text) => text,
+            ArrayItems::SharedText(text) => text,
             _ => unreachable!("a string holds a text"),
+        }
+    }
+
+    /// The text, which others hold from now on as well.
+    pub fn shared_text(&mut self) -> Arc<str> {
+        let text = match std::mem::replace(&mut self.items, ArrayItems::Nothing) {
+            ArrayItems::OwnedText(text) => Arc::from(text),
+            ArrayItems::SharedText(text) => text,
+            _ => unreachable!("a string holds a text"),
+        };
+        self.items = ArrayItems::SharedText(text.clone());
+        text
+    }
+
+    /// The room of the text, for another one in its place, which may begin with it.
+    pub fn text_room(&mut self, with_text: bool) -> String {
+        match std::mem::replace(&mut self.items, ArrayItems::Nothing) {
+            ArrayItems::OwnedText(mut text) => {
+                if !with_text {
+                    text.clear();
+                }
+                text
+            }
+            ArrayItems::SharedText(text) if with_text => String::from(&*text),
+            _ => String::new(),
         }
     }
 
@@ -157,7 +186,7 @@ impl<T: Real> ArrayRegister<T> {
                     Err(array) => ArrayItems::SharedVectors(array),
                 };
             }
-            Value::Text(text) => self.items = ArrayItems::Text(text),
+            Value::Text(text) => self.items = ArrayItems::SharedText(text),
             other => {
                 *value = other;
                 (self.items, self.shape) = (ArrayItems::Nothing, ArrayShape::Row(0));
@@ -176,7 +205,8 @@ impl<T: Real> ArrayRegister<T> {
                 Value::Vectors(Arc::new(Vectors { shape: self.shape, planes }))
             }
             ArrayItems::SharedVectors(array) => Value::Vectors(array),
-            ArrayItems::Text(text) => Value::Text(text),
+            ArrayItems::OwnedText(text) => Value::Text(text.into()),
+            ArrayItems::SharedText(text) => Value::Text(text),
             ArrayItems::Nothing => Value::Unset,
         };
         (value, std::mem::take(&mut self.known))
@@ -190,30 +220,31 @@ impl<T: Real> ArrayRegister<T> {
             ArrayItems::OwnedVectors(planes) => {
                 ArrayItems::SharedVectors(Arc::new(Vectors { shape, planes }))
             }
+            ArrayItems::OwnedText(text) => ArrayItems::SharedText(text.into()),
             other => other,
         };
         let items = match &self.items {
             ArrayItems::Shared(array) => ArrayItems::Shared(array.clone()),
             ArrayItems::SharedVectors(array) => ArrayItems::SharedVectors(array.clone()),
-            ArrayItems::Text(text) => ArrayItems::Text(text.clone()),
+            ArrayItems::SharedText(text) => ArrayItems::SharedText(text.clone()),
             _ => ArrayItems::Nothing,
         };
-        Self { items, shape: self.shape, known: Known::default(), mark }
+        Self { items, shape: self.shape, known: Known::default(), mark, turn: 0 }
     }
 }
 
 /// A call that waits for the one that it made.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct WaitingCall {
-    pub unit: usize,
-    pub pc: usize,
-    pub registers: usize,
-    pub marks: usize,
-    pub arrays: usize,
+    pub unit: u32,
+    pub pc: u32,
+    pub registers: u32,
+    pub marks: u32,
+    pub arrays: u32,
+    pub errors: u32,
     /// Register for the value of the call, and its position.
     pub to: u16,
     pub site: u16,
-    pub errors: usize,
 }
 
 /// State of running code.
@@ -258,7 +289,10 @@ impl<T: Scalar> RegisterMachine<T> {
             machine.first_mark = machine.marks.len();
             machine.first_array = machine.arrays.len();
             let code = &region.units[unit];
-            machine.registers.extend(&code.template);
+            machine.registers.resize(machine.first + code.registers, T::zero());
+            for &(register, x) in &code.constants {
+                machine.registers[machine.first + register as usize] = x;
+            }
             for variable in &code.variables {
                 let before = variable.captured.is_some();
                 machine.marks.push(if before { AS_BEFORE } else { UNDECLARED });
@@ -267,7 +301,7 @@ impl<T: Scalar> RegisterMachine<T> {
                 let mark = if array.captured { AS_BEFORE } else { UNDECLARED };
                 let mut register = ArrayRegister::nothing(mark);
                 if let Some(text) = &array.text {
-                    register.items = ArrayItems::Text(text.clone());
+                    register.items = ArrayItems::SharedText(text.clone());
                 }
                 machine.arrays.push(register);
             }
@@ -276,17 +310,21 @@ impl<T: Scalar> RegisterMachine<T> {
     }
 
     /// Returns to a waiting call, at its call instruction.
+    #[inline(always)]
     pub fn back_to(&mut self, call: WaitingCall) {
-        self.arrays.truncate(self.first_array.max(call.arrays));
-        self.unit = call.unit;
-        self.pc = call.pc;
-        self.first = call.registers;
-        self.first_mark = call.marks;
-        self.first_array = call.arrays;
+        let arrays = self.first_array.max(call.arrays as usize);
+        if self.arrays.len() > arrays {
+            self.arrays.truncate(arrays);
+        }
+        self.unit = call.unit as usize;
+        self.pc = call.pc as usize;
+        self.first = call.registers as usize;
+        self.first_mark = call.marks as usize;
+        self.first_array = call.arrays as usize;
     }
 
     /// Begins the call of a site; false when there are too many calls.
-    #[inline]
+    #[inline(always)]
     pub fn enters(&mut self, region: &CodeRegion<T>, to: u16, site: u16, errors: usize) -> bool {
         if self.frames + self.waiting.len() >= MOST_CALLS {
             return false;
@@ -295,63 +333,67 @@ impl<T: Scalar> RegisterMachine<T> {
         let called = &code.sites[site as usize];
         let callee = &region.units[called.unit];
         self.waiting.push(WaitingCall {
-            unit: self.unit,
-            pc: self.pc,
-            registers: self.first,
-            marks: self.first_mark,
-            arrays: self.first_array,
+            unit: self.unit as u32,
+            pc: self.pc as u32,
+            registers: self.first as u32,
+            marks: self.first_mark as u32,
+            arrays: self.first_array as u32,
+            errors: errors as u32,
             to,
             site,
-            errors,
         });
-        let first = self.first + code.template.len();
-        let (end, marks) = (first + callee.template.len(), self.first_mark + code.variables.len());
-        let end_of_marks = marks + callee.variables.len();
-        if self.registers.len() < end {
-            self.registers.resize(2 * end, T::zero());
+        let first = self.first + code.registers;
+        let marks = self.first_mark + code.variables.len();
+        let (end, end_of_marks) = (first + callee.registers, marks + callee.marks.len().max(FEW));
+        if self.registers.len() < end || self.marks.len() < end_of_marks {
+            self.make_room(end, end_of_marks);
         }
-        if self.marks.len() < end_of_marks {
-            self.marks.resize(2 * end_of_marks, UNDECLARED);
+        let (outer, own) = self.registers.split_at_mut(first);
+        let outer = &outer[self.first..];
+        for &(from, to) in &called.moves.numbers {
+            own[to as usize] = outer[from as usize];
         }
-        self.registers[first..end].copy_from_slice(&callee.template);
-        self.marks[marks..end_of_marks].copy_from_slice(&callee.marks);
+        for &(register, x) in &callee.constants {
+            own[register as usize] = x;
+        }
+        self.marks[marks..marks + FEW].copy_from_slice(&callee.few_marks);
+        if callee.marks.len() > FEW {
+            self.marks[marks + FEW..end_of_marks].copy_from_slice(&callee.marks[FEW..]);
+        }
         let arrays = self.arrays.len();
         if !callee.arrays.is_empty() {
-            let none = || ArrayRegister::nothing(UNDECLARED);
-            self.arrays.resize_with(arrays + callee.arrays.len(), none);
-        }
-        for (k, (formal, argument)) in callee.formals.iter().zip(&called.args).enumerate() {
-            match (*formal, *argument) {
-                (None, CodeArgument::OfFile) => {}
-                (Some(Poisonable::Variable(v)), CodeArgument::Vector { from }) => {
-                    let to = first + callee.variables[v as usize].register as usize;
-                    let from = self.first + from as usize;
-                    self.registers.copy_within(from..from + 3, to);
-                }
-                (Some(Poisonable::Variable(v)), CodeArgument::Number { from }) => {
-                    let register = callee.variables[v as usize].register as usize;
-                    self.registers[first + register] = self.registers[self.first + from as usize];
-                }
-                (Some(Poisonable::Array(a)), CodeArgument::Array { from }) => {
-                    let own = self.first_array + from as usize;
-                    let of_file = (from & !OF_FILE) as usize;
-                    let from = if from & OF_FILE == 0 { own } else { of_file };
-                    let passed = self.arrays[from].passed(declared_by(k as u16));
-                    self.arrays[arrays + a as usize] = passed;
-                }
-                _ => unreachable!("arguments are of their formals' kinds"),
-            }
+            self.pass_arrays(called, arrays + callee.arrays.len());
         }
         (self.unit, self.pc) = (called.unit, 0);
         (self.first, self.first_mark, self.first_array) = (first, marks, arrays);
         true
     }
 
+    #[cold]
+    fn make_room(&mut self, registers: usize, marks: usize) {
+        let most = |now: usize, asked: usize| if now < asked { 2 * asked } else { now };
+        self.registers.resize(most(self.registers.len(), registers), T::zero());
+        self.marks.resize(most(self.marks.len(), marks), UNDECLARED);
+    }
+
+    /// Makes the arrays of a call up to number `end`, those passed to it among them.
+    fn pass_arrays(&mut self, called: &CodeSite, end: usize) {
+        let first = self.arrays.len();
+        self.arrays.resize_with(end, || ArrayRegister::nothing(UNDECLARED));
+        for &(from, to, formal) in &called.moves.arrays {
+            let own = self.first_array + from as usize;
+            let of_file = (from & !OF_FILE) as usize;
+            let from = if from & OF_FILE == 0 { own } else { of_file };
+            let passed = self.arrays[from].passed(declared_by(formal));
+            self.arrays[first + to as usize] = passed;
+        }
+    }
+
     /// Goes back to the call that waits with a number of the routine's type, or a vector for a vector, when no frame of
     /// the interpreter was made: the usual case. False when it is another.
-    #[inline]
-    pub fn returns_plainly(&mut self, region: &CodeRegion<T>, x: &[T]) -> bool {
-        let fits = match self.result_of(region) {
+    #[inline(always)]
+    pub fn returns_plainly(&mut self, result: Option<Type>, x: &[T]) -> bool {
+        let fits = match result {
             Some(Type::Float) => x.len() == 1,
             Some(Type::Int) => x.len() == 1 && !is_no_int(x[0].re()),
             Some(Type::Vector) => x.len() == 3,
@@ -368,10 +410,6 @@ impl<T: Scalar> RegisterMachine<T> {
             self.registers[to..to + x.len()].copy_from_slice(x);
         }
         true
-    }
-
-    fn result_of(&self, region: &CodeRegion<T>) -> Option<Type> {
-        region.units[self.unit].result
     }
 
     /// Makes the variable of the failed current declaration undefined.
@@ -400,7 +438,7 @@ impl<T: Scalar> RegisterMachine<T> {
     /// arrays.
     fn part(&self, at: usize) -> [usize; 4] {
         match self.waiting.get(at) {
-            Some(call) => [call.unit, call.registers, call.marks, call.arrays],
+            Some(call) => [call.unit, call.registers, call.marks, call.arrays].map(|x| x as usize),
             None => [self.unit, self.first, self.first_mark, self.first_array],
         }
     }
@@ -592,12 +630,14 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         let depth = machine.waiting.len();
         for at in self.env.scope.frames.len() - machine.frames + 1..=depth {
             let caller = machine.waiting[at - 1];
-            let site = &region.units[caller.unit].sites[caller.site as usize];
+            let unit = caller.unit as usize;
+            let site = &region.units[unit].sites[caller.site as usize];
             let outer = self.env.scope.frame();
             let mut frame = CallFrame::new(false, outer.prefix.clone());
             frame.loops = outer.loops.clone();
-            frame.loops.extend(self.loops_at(machine, caller.registers, &site.loops));
-            frame.called = Some((site.span, region.units[caller.unit].module as u32));
+            let registers = caller.registers as usize;
+            frame.loops.extend(self.loops_at(machine, registers, &site.loops));
+            frame.called = Some((site.span, region.units[unit].module as u32));
             for &(name, span, of_file) in &region.units[machine.part(at)[0]].references {
                 let what = Binding::Reference(Place::whole(None, of_file));
                 frame.locals.push((name, ScopedBinding { span, what }));

@@ -5,8 +5,9 @@ use super::code::{
 };
 use super::compile::{RegionCompiler, Unfit};
 use super::names::Meaning;
-use super::registers::ArrayRegister;
+use super::registers::{ArrayItems, ArrayRegister};
 use crate::functions::format::{FormatArgument, FormatPattern};
+use crate::value::ops;
 use moldloft_num::Real;
 use moldloft_registry::Scalar;
 use moldloft_syntax::sdl::{
@@ -100,6 +101,16 @@ impl<T: Scalar> RegionCompiler<'_, T> {
         Ok(want.unwrap_or(a))
     }
 
+    /// Puts a text that was computed to its target.
+    fn text_to(&mut self, to: u16, a: u16) -> Result<(), Unfit> {
+        let op = match () {
+            () if a == to => return Ok(()),
+            () if self.progress[self.unit].taken_texts.contains(&a) => ScalarOp::MoveText { to, a },
+            () => ScalarOp::CopyText { to, a },
+        };
+        self.emit(op).map(drop)
+    }
+
     fn text_result(&mut self, want: Option<u16>) -> u16 {
         want.unwrap_or_else(|| self.scratch_text())
     }
@@ -180,9 +191,7 @@ impl<T: Scalar> RegionCompiler<'_, T> {
                 let want = Some(to).filter(|_| self.is_live(what));
                 let a = self.text(id, value, want)?;
                 self.live(what, note)?;
-                if a != to {
-                    self.emit(ScalarOp::CopyText { to, a })?;
-                }
+                self.text_to(to, a)?;
             }
             AssignOp::With(BinaryOp::Add) if !self.calls(value) => {
                 self.live(what, note)?;
@@ -212,7 +221,7 @@ impl<T: Scalar> RegionCompiler<'_, T> {
             (Some(text), _) => drop(self.constant_text(text, Some(array))?),
             (None, Some(value)) => {
                 let a = self.text(stmt, value, None)?;
-                self.emit(ScalarOp::CopyText { to: array, a })?;
+                self.text_to(array, a)?;
             }
             (None, None) => {}
         }
@@ -222,18 +231,62 @@ impl<T: Scalar> RegionCompiler<'_, T> {
     }
 }
 
+/// The arrays of a call and of the file, by number.
+pub(super) struct ArraysByNumber<'a, T> {
+    pub own: &'a mut [ArrayRegister<T>],
+    pub of_file: &'a mut [ArrayRegister<T>],
+}
+
+impl<T: Real> ArraysByNumber<'_, T> {
+    fn text(&self, a: u16) -> &str {
+        match a & OF_FILE {
+            0 => self.own[a as usize].text(),
+            _ => self.of_file[(a & !OF_FILE) as usize].text(),
+        }
+    }
+
+    fn at(&mut self, a: u16) -> &mut ArrayRegister<T> {
+        match a & OF_FILE {
+            0 => &mut self.own[a as usize],
+            _ => &mut self.of_file[(a & !OF_FILE) as usize],
+        }
+    }
+
+    /// Joins two texts, in the room of the target; `None` if the result is too long.
+    #[inline(never)]
+    pub fn join(&mut self, to: u16, a: u16, b: u16) -> Option<()> {
+        let length = self.text(a).len() + self.text(b).len();
+        if length > ops::LONGEST_TEXT {
+            return None;
+        }
+        let mut joined = match to == b {
+            true => String::with_capacity(length),
+            false => self.at(to).text_room(to == a),
+        };
+        if to != a || to == b {
+            joined.push_str(self.text(a));
+        }
+        joined.push_str(self.text(b));
+        self.at(to).items = ArrayItems::OwnedText(joined);
+        Some(())
+    }
+
+    /// Two texts change places.
+    pub fn exchange(&mut self, to: u16, a: u16) {
+        let moved = std::mem::replace(&mut self.at(a).items, ArrayItems::Nothing);
+        let before = std::mem::replace(&mut self.at(to).items, moved);
+        self.at(a).items = before;
+    }
+}
+
 /// The text of `format(...)`; `None` for a fault.
 #[inline(never)]
 pub(super) fn formatted<T: Real>(
     format: &CodeFormat,
     registers: &[T],
-    arrays: &[ArrayRegister<T>],
-    arrays_of_file: &[ArrayRegister<T>],
-) -> Option<Arc<str>> {
-    let text = |a: u16| match a & OF_FILE {
-        0 => arrays[a as usize].text(),
-        _ => arrays_of_file[(a & !OF_FILE) as usize].text(),
-    };
+    arrays: &ArraysByNumber<'_, T>,
+) -> Option<String> {
+    let text = |a: u16| arrays.text(a);
     let number = |at: usize| FormatArgument::Number(registers[at].re() + 0.0);
     let mut items: SmallVec<[FormatArgument; 4]> = SmallVec::new();
     for argument in &format.args {
@@ -242,7 +295,7 @@ pub(super) fn formatted<T: Real>(
             CodeArgument::Vector { from } => {
                 items.extend((0..3).map(|c| number(from as usize + c)))
             }
-            CodeArgument::Array { from } => items.push(FormatArgument::Text(text(from).clone())),
+            CodeArgument::Array { from } => items.push(FormatArgument::Text(text(from).into())),
             CodeArgument::OfFile => return None,
         }
     }
@@ -250,5 +303,5 @@ pub(super) fn formatted<T: Real>(
         Some(pattern) => pattern.spelled(&items),
         None => FormatPattern::of(text(format.pattern)).and_then(|pattern| pattern.spelled(&items)),
     };
-    spelled.ok().map(Arc::from)
+    spelled.ok()
 }

@@ -1,6 +1,6 @@
 //! `foreach` over the elements of an array to code: those that it had when the loop began.
 
-use super::code::{CodeNote, Poisonable, ScalarOp};
+use super::code::{CodeNote, NO_LABEL, Poisonable, ScalarOp};
 use super::compile::{RegionCompiler, Unfit};
 use super::names::element_type;
 use moldloft_registry::Scalar;
@@ -31,28 +31,24 @@ impl<T: Scalar> RegionCompiler<'_, T> {
         let Poisonable::Array(array) = self.new_array(unit, None, ty, false, true) else {
             return Err(Unfit::Statement);
         };
-        // The turn, the number of turns, the number in names, the turn's own number.
-        let at = self.register(unit);
-        for _ in 0..3 {
-            self.register(unit);
-        }
-        self.emit(ScalarOp::WalkBegin { at, array, from })?;
+        let at = self.label_registers();
+        self.emit(ScalarOp::WalkBegin { array, from })?;
         self.forget(&[body])?;
         let before = self.sure();
         let origin = self.origin(variable.span, element)?;
         let sites = self.units[unit].sites.len();
-        let kept = true;
-        let op = ScalarOp::WalkTest { at, array, variable: number, origin, exit: 0, kept };
+        let register = held.register;
+        let op = ScalarOp::WalkTest { at, array, variable: number, register, origin, exit: 0 };
         let test = self.emit(op)?;
         self.set_known(what, true, true);
-        self.looped(at + 2, true, body, None, |this| {
-            this.emit(ScalarOp::WalkNext { at, test: test as u16 }).map(drop)
+        self.looped(at, true, body, None, |this| {
+            this.emit(ScalarOp::WalkNext { test: test as u16 }).map(drop)
         })?;
         self.restore(&before);
         if self.units[unit].sites.len() == sites
-            && let ScalarOp::WalkTest { kept, .. } = &mut self.units[unit].code[test]
+            && let ScalarOp::WalkTest { at, .. } = &mut self.units[unit].code[test]
         {
-            *kept = false;
+            *at = NO_LABEL;
         }
         self.land(test)?;
         self.breaks_here()?;
