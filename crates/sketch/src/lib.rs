@@ -100,7 +100,7 @@ pub use feature::{
 };
 pub use format::dimension_marks::DimensionMark;
 pub use format::script::{script, scripts};
-pub use format::{dxf, export, json, json_format, page_shapes};
+pub use format::{dxf, export, json, json_format, page_curve, page_shapes, page_spline};
 pub use identifier::identifier;
 pub use moldloft_mesh::triangulate;
 pub use object::{Reference, SketchFace, SketchObject, results};

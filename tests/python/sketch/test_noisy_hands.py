@@ -55,6 +55,13 @@ def roofed(ridge: list[tuple[float, float, float]]) -> Shape:
     return points, edges
 
 
+def solid(corners: str, chains: str) -> Shape:
+    """The corners as `x,y,z x,y,z ...`, and the edges as chains of their numbers."""
+    points = np.array([[float(x) for x in text.split(",")] for text in corners.split()])
+    ways = [[int(k) for k in chain.split(",")] for chain in chains.split()]
+    return points, [edge for way in ways for edge in pairwise(way)]
+
+
 PARTS = {
     "angle": prism("XZ", 45, "0,0 80,0 80,10 12,10 12,60 0,60"),
     "stairs": prism("XZ", 90, "0,0 0,17 28,17 28,34 56,34 56,51 84,51 84,0"),
@@ -81,6 +88,28 @@ PARTS = {
     "portal": prism("XZ", 30, "0,0 14,0 14,50 66,50 66,0 80,0 80,64 0,64"),
     "hip roof": roofed([(28.0, 30.0, 58.0), (62.0, 30.0, 58.0)]),
     "spire": roofed([(45.0, 30.0, 75.0)]),
+    "retaining wall": prism(
+        "XZ", 60, "0,0 10,0 10,-5 15,-5 15,0 40,0 40,6 16,6 13.5,50 10,50 10,6 0,6"
+    ),
+    "gusset": prism("XZ", 8, "0,0 100,0 100,35 65,70 20,70 0,35"),
+    "beam": prism("XZ", 90, "0,0 50,0 50,8 30,8 30,62 50,62 50,70 0,70 0,62 20,62 20,8 0,8"),
+    "comb": prism(
+        "XZ", 60, "0,0 78,0 78,40 66,40 66,10 50,10 50,40 38,40 38,10 22,10 22,40 10,40 10,10 0,10"
+    ),
+    "stepped frustum": prism("YZ", 60, "0,0 70,0 58,24 46,24 40,48 30,48 24,24 12,24"),
+    "hopper": solid(
+        "24,18,0 44,18,0 44,34,0 24,34,0 0,0,50 70,0,50 70,52,50 0,52,50",
+        "0,1,2,3,0,4,5,6,7,4 1,5 2,6 3,7",
+    ),
+    "cut corner": solid(
+        "0,0,0 60,0,0 60,50,0 0,50,0 0,0,40 38,0,40 60,0,22 60,24,40 60,50,40 0,50,40",
+        "0,1,2,3,0,4,5,6,1 5,7,6 7,8,2 8,9,4 9,3",
+    ),
+    "corner step": solid(
+        "0,0,0 80,0,0 80,60,0 0,60,0 0,0,20 80,0,20 80,60,20 40,60,20 40,30,20 0,30,20 "
+        "40,60,50 40,30,50 0,30,50 0,60,50",
+        "0,1,2,3,0,4,5,1 5,6,2 6,7,8,9,4 7,10,11,12,13,10 8,11 9,12 13,3",
+    ),
 }
 
 

@@ -19,6 +19,7 @@ impl SketchSession {
         let mut kind = match verb {
             "ARC" => CurveKind::Arc,
             "CIRCLE" => CurveKind::Circle,
+            "BEZIER" => CurveKind::Bezier,
             _ => CurveKind::Ellipse,
         };
         let mut full = false;
@@ -90,8 +91,14 @@ impl SketchSession {
             }
         }
         let unit = object.units.as_deref();
-        let (mut radius, mut semi) = (None, None);
-        if kind == CurveKind::Arc || kind == CurveKind::Circle {
+        let (mut radius, mut semi, mut shape) = (None, None, Vec::new());
+        if kind == CurveKind::Bezier {
+            if args.take("WEIGHT") {
+                shape = vec![args.value(None)?];
+            } else if args.take("HANDLES") {
+                shape = vec![args.value(None)?, args.value(None)?];
+            }
+        } else if kind == CurveKind::Arc || kind == CurveKind::Circle {
             if args.take("RADIUS") {
                 radius = Some(args.value(unit)?);
             }
@@ -104,6 +111,7 @@ impl SketchSession {
             points,
             radius,
             semi,
+            shape,
             steps: None,
             replaces: true,
             centripetal: false,
@@ -181,6 +189,7 @@ impl SketchSession {
             points,
             radius: None,
             semi: None,
+            shape: Vec::new(),
             steps: None,
             replaces,
             centripetal: false,
@@ -264,6 +273,12 @@ fn curve_fault(name: &str, fault: &CurveFault) -> CommandError {
             format!("at most {} fits", plain(super::digits::rounded(*largest))),
         )
         .about(ReplySubject::of("curve-too-large").names([&name.to_owned()]).value(*largest)),
+        CurveFault::NoEllipse { value } => CommandError::new(
+            310,
+            format!("{name} has the weight {}, of no ellipse", plain(*value)),
+            "give a weight below 1; without one it is a parabola",
+        )
+        .about(ReplySubject::of("size-too-large").names([&name.to_owned()]).value(*value)),
         CurveFault::Undetermined => CommandError::new(
             404,
             format!("the points of {name} are not determined yet"),

@@ -367,7 +367,7 @@ impl SketchSession {
                         return Err(CommandError::new(
                             105,
                             format!("object {} has no curves", object.name),
-                            "ARC, CIRCLE, QUADRATIC, CUBIC and ELLIPSE draw them",
+                            "ARC, CIRCLE, QUADRATIC, CUBIC, ELLIPSE and BEZIER draw them",
                         )
                         .about(ReplySubject::of("no-curves").names([&object.name])));
                     }

@@ -3,6 +3,7 @@
 use super::CommandError;
 use super::args::Args;
 use super::session::{CommandReply, SketchSession};
+use super::subject::ReplySubject;
 use super::words::CommandTokenKind;
 use crate::format::json::Json;
 use crate::format::json_format::{ObjectData, from_json, object_data, to_json};
@@ -164,6 +165,7 @@ impl SketchSession {
             self.nested(&format!("SKETCH \"{}\" 2D XY", name.replace('"', "_")))?;
         }
         let before = self.active()?.clone();
+        self.check_page(shapes.size(), shapes.line_count())?;
         self.begin_exact(&mut shapes)?;
         self.check_page(shapes.size(), shapes.line_count())?;
         let size = shapes.size();
@@ -195,9 +197,9 @@ impl SketchSession {
     fn begin_exact(&mut self, shapes: &mut PageShapes) -> Result<(), CommandError> {
         let object = self.active()?;
         let drawing = &object.drawing;
-        let plain =
+        let flat =
             drawing.section.is_some_and(|s| drawing.projection == crate::Projection::section(s));
-        if !plain || (!drawing.points.is_empty() && !drawing.exact) {
+        if !flat || (!drawing.points.is_empty() && !drawing.exact) {
             return Ok(());
         }
         let (first, unit) = (drawing.points.is_empty(), object.units.is_none());
@@ -207,7 +209,19 @@ impl SketchSession {
         if let Some(word) = shapes.unit.filter(|_| unit) {
             self.active_mut()?.units = Some(word.to_owned());
         }
-        shapes.split(1e-9 * shapes.size());
+        let tolerance = 1e-9 * shapes.size();
+        shapes.split(tolerance);
+        if let Some(at) = shapes.separate(tolerance).first() {
+            let about = ReplySubject::of("curves-touch");
+            let at = at.map(plain).join(" ");
+            let text = format!("two curves of the drawing touch without crossing at {at}");
+            let next = "move one of them, or join them there in the drawing";
+            self.out.push(CommandReply {
+                about,
+                next: Some(next.into()),
+                ..CommandReply::warning(text)
+            });
+        }
         Ok(())
     }
 

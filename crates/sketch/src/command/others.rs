@@ -119,9 +119,6 @@ fn expressions_of(object: &mut SketchObject) -> impl Iterator<Item = &mut Dimens
     let values = values.chain(object.dimensions.values_mut().filter_map(|d| d.value.as_mut()));
     let feature = object.feature.iter_mut().map(Arc::make_mut);
     let values = values.chain(feature.flat_map(|f| f.kind.numbers_mut()));
-    let sizes = object
-        .curves
-        .values_mut()
-        .flat_map(|c| c.radius.iter_mut().chain(c.semi.iter_mut().flatten()));
+    let sizes = object.curves.values_mut().flat_map(|c| c.sizes_mut());
     values.chain(sizes).chain(object.reference.iter_mut().flat_map(|r| &mut r.at))
 }

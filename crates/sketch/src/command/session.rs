@@ -525,7 +525,7 @@ impl SketchSession {
             "LEAVE" => self.leave(args),
             "MEASURE" => self.measure(args),
             "CIRCLE" if args.at("DIAMETER") => self.section_shape(args, verb),
-            "ARC" | "CIRCLE" | "ELLIPSE" => self.corner_curve(args, verb),
+            "ARC" | "CIRCLE" | "ELLIPSE" | "BEZIER" => self.corner_curve(args, verb),
             "QUADRATIC" | "PARABOLA" => self.chain_curve(args, 3),
             "CUBIC" | "OVERHAUSER" => self.chain_curve(args, 4),
             "USING" => self.using(args, true),

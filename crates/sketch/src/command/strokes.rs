@@ -5,9 +5,12 @@ use super::args::Args;
 use super::files::drawn_since;
 use super::session::{CommandReply, SketchSession};
 use super::subject::ReplySubject;
-use crate::format::page_shapes::{add_curve, draw, point_at, radius_name};
+use crate::format::page_curve::PageCurve;
+use crate::format::page_shapes::{PageShapes, add_curve, draw, point_at, radius_name};
 use crate::solid::curve::CurveKind;
-use crate::{Drawing, PenSample, PointId, StrokeFit, StrokeKind, StrokePiece, fit_stroke};
+use crate::{
+    DimensionExpr, Drawing, PenSample, PointId, StrokeFit, StrokeKind, StrokePiece, fit_stroke,
+};
 use moldloft_syntax::number::plain;
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -23,8 +26,8 @@ const MOST_TURN: f64 = 2.6;
 /// Axes of an ellipse within this angle of those of the page, in radians, are parallel to them.
 const LEVEL: f64 = 0.1;
 
-/// Most chords of a spline or an elliptical arc.
-const MOST_CHORDS: usize = 60;
+/// Corners and handles of splines are rounded to this part of the step of positions, so that they stay smooth.
+const FINER: f64 = 1e-2;
 
 /// The parts of a stroke that a sketch has.
 #[derive(Default)]
@@ -34,6 +37,8 @@ struct DrawnStroke {
     arcs: Vec<([Place; 3], Option<f64>)>,
     /// Three corners of the parallelogram around a circle or ellipse.
     rounds: Vec<([Place; 3], CurveKind)>,
+    /// Parts of splines and ellipses: their corners and numbers.
+    curves: Vec<([Place; 3], Vec<f64>)>,
     remarks: Vec<String>,
 }
 
@@ -68,11 +73,16 @@ impl SketchSession {
             let most = largest(*corner);
             let radius = radius.map_or(most, |r| r.min(most));
             let radius = radius_name(object, radius);
-            names.push(add_curve(object, CurveKind::Arc, ids, Some(radius)));
+            names.push(add_curve(object, CurveKind::Arc, ids, Some(radius), vec![]));
         }
         for (corner, kind) in &drawn.rounds {
             let Some(ids) = find(&object.drawing, *corner) else { continue };
-            names.push(add_curve(object, *kind, ids, None));
+            names.push(add_curve(object, *kind, ids, None, vec![]));
+        }
+        for (corner, shape) in drawn.curves {
+            let Some(ids) = find(&object.drawing, corner) else { continue };
+            let shape = shape.into_iter().map(DimensionExpr::number).collect();
+            names.push(add_curve(object, CurveKind::Bezier, ids, None, shape));
         }
         let kinds: Vec<&str> = fit.pieces.iter().map(|p| p.kind.word()).collect();
         let mut text = format!("{}: {points} points and {lines} lines", kinds.join(", "));
@@ -159,7 +169,7 @@ impl DrawnStroke {
                 }
                 _ => {
                     refuse_in_picture(drawing, piece.kind)?;
-                    out.chords(piece, [start, end], fit.noise, &grid);
+                    out.curve(piece, [start, end], &grid);
                 }
             }
         }
@@ -229,34 +239,36 @@ impl DrawnStroke {
         self.rounds.push(([ring[1], ring[0], ring[3]], kind));
     }
 
-    /// A spline or elliptical arc as lines within the noise of the pen.
-    fn chords(
-        &mut self,
-        piece: &StrokePiece,
-        [start, end]: [Place; 2],
-        noise: f64,
-        grid: &RoundedPlaces,
-    ) {
-        let dense = dense(piece);
-        let mut n = 2;
-        let pick = |n: usize| -> Vec<Place> {
-            (0..=n).map(|k| dense[k * (dense.len() - 1) / n]).collect()
-        };
-        let off = |way: &[Place]| dense.iter().map(|p| distance_from(way, *p)).fold(0.0, f64::max);
-        while n < MOST_CHORDS && off(&pick(n)) > 2.0 * noise {
-            n += 1;
+    /// The parts of a spline or of an arc of an ellipse, each in a corner of two lines.
+    fn curve(&mut self, piece: &StrokePiece, [start, end]: [Place; 2], grid: &RoundedPlaces) {
+        let mut curves = curves_of(piece);
+        if let Some(first) = curves.first_mut() {
+            first.set_end(0, start);
         }
-        let mut way: Vec<Place> = pick(n).into_iter().map(|p| grid.rounded(p)).collect();
-        way[0] = start;
-        way[n] = end;
-        let before = self.lines.len();
-        way.windows(2).for_each(|w| self.line(w[0], w[1]));
-        let count = self.lines.len() - before;
-        self.remarks.push(format!(
-            "a {} is drawn as {count} lines within {}: CUBIC draws a curve through points",
-            piece.kind.word(),
-            plain(super::digits::rounded(2.0 * noise))
-        ));
+        if let Some(last) = curves.last_mut() {
+            last.set_end(1, end);
+        }
+        let mut parts = Vec::new();
+        curves.iter().for_each(|curve| curve.in_corners(&mut parts));
+        let mut from = start;
+        let count = parts.len();
+        for (k, part) in parts.into_iter().enumerate() {
+            let to = if k + 1 == count { end } else { grid.finer(part.ends()[1]) };
+            match part.corner() {
+                Some([_, corner, _]) => {
+                    let corner = grid.finer(corner);
+                    self.line(from, corner);
+                    self.line(corner, to);
+                    // A weight stays below 1.
+                    let four = |x: f64| tidy((x * 1e4).round() * 1e-4);
+                    let digits = |x: f64| if four(x) < 1.0 { four(x) } else { x };
+                    let shape = part.shape().into_iter().map(digits).collect();
+                    self.curves.push(([from, corner, to], shape));
+                }
+                None => self.line(from, to),
+            }
+            from = to;
+        }
     }
 }
 
@@ -321,6 +333,11 @@ impl RoundedPlaces<'_> {
         at.map(|x| self.rounded_length(x))
     }
 
+    fn finer(&self, at: Place) -> Place {
+        let step = FINER * self.step;
+        at.map(|x| if step == 0.0 { x } else { tidy((x / step).round() * step) })
+    }
+
     fn rounded_length(&self, x: f64) -> f64 {
         if self.step == 0.0 { x } else { tidy((x / self.step).round() * self.step) }
     }
@@ -353,47 +370,25 @@ fn largest([a, m, b]: [Place; 3]) -> f64 {
     reach * libm::tan(0.5 * angle)
 }
 
-/// Closely spaced points of a spline or an elliptical arc.
-fn dense(piece: &StrokePiece) -> Vec<Place> {
+/// The curves of a spline or of an arc of an ellipse.
+fn curves_of(piece: &StrokePiece) -> Vec<PageCurve> {
     let p = &piece.points;
-    if let (Some(c), Some([a, b])) = (piece.centre, piece.half_axes) {
-        let [m, n] = [a, b].map(|h| h[0] * h[0] + h[1] * h[1]);
-        let angle = |p: Place| {
-            let d = [p[0] - c[0], p[1] - c[1]];
-            libm::atan2((d[0] * b[0] + d[1] * b[1]) / n, (d[0] * a[0] + d[1] * a[1]) / m)
-        };
-        let [from, middle, to] = [p[0], p[1], p[2]].map(angle);
-        let ahead = |from: f64, to: f64| (to - from).rem_euclid(2.0 * PI);
-        let sweep = match ahead(from, middle) <= ahead(from, to) {
-            true => ahead(from, to),
-            false => -ahead(to, from),
-        };
-        let at = |k: usize| {
-            let t = from + sweep * k as f64 / 240.0;
-            [0, 1].map(|x| c[x] + libm::cos(t) * a[x] + libm::sin(t) * b[x])
-        };
-        return (0..=240).map(at).collect();
-    }
-    let mut out = vec![p[0]];
-    for q in p.windows(4).step_by(3) {
-        for j in 1..=24 {
-            let s = f64::from(j) / 24.0;
-            let w = 1.0 - s;
-            let b = [w * w * w, 3.0 * w * w * s, 3.0 * w * s * s, s * s * s];
-            out.push([0, 1].map(|x| (0..4).map(|i| b[i] * q[i][x]).sum::<f64>()));
-        }
-    }
-    out
-}
-
-/// Distance of a point from a chain of lines.
-fn distance_from(way: &[Place], p: Place) -> f64 {
-    let one = |w: &[Place]| {
-        let d = [w[1][0] - w[0][0], w[1][1] - w[0][1]];
-        let off = [p[0] - w[0][0], p[1] - w[0][1]];
-        let square = (d[0] * d[0] + d[1] * d[1]).max(f64::MIN_POSITIVE);
-        let s = ((off[0] * d[0] + off[1] * d[1]) / square).clamp(0.0, 1.0);
-        libm::hypot(off[0] - s * d[0], off[1] - s * d[1])
+    let (Some(c), Some([a, b])) = (piece.centre, piece.half_axes) else {
+        let cubic = |q: &[Place]| PageCurve::Cubic([q[0], q[1], q[2], q[3]]);
+        return p.windows(4).step_by(3).map(cubic).collect();
     };
-    way.windows(2).map(one).fold(f64::INFINITY, f64::min)
+    let [m, n] = [a, b].map(|h| h[0] * h[0] + h[1] * h[1]);
+    let angle = |p: Place| {
+        let d = [p[0] - c[0], p[1] - c[1]];
+        libm::atan2((d[0] * b[0] + d[1] * b[1]) / n, (d[0] * a[0] + d[1] * a[1]) / m)
+    };
+    let [from, middle, to] = [p[0], p[1], p[2]].map(angle);
+    let ahead = |from: f64, to: f64| (to - from).rem_euclid(2.0 * PI);
+    let sweep = match ahead(from, middle) <= ahead(from, to) {
+        true => ahead(from, to),
+        false => -ahead(to, from),
+    };
+    let mut shapes = PageShapes::default();
+    shapes.elliptical(c, [a, b], from, sweep);
+    shapes.curves
 }

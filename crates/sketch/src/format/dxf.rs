@@ -1,15 +1,15 @@
 //! Drawings of other programs as sketches.
 
 use crate::format::page_shapes::PageShapes;
+use crate::format::page_spline::spline_curves;
 use crate::format::svg_transform::SvgTransform;
 use std::collections::BTreeMap;
 
 /// Blocks inserted in one another deeper than this are left out.
 const MAX_DEPTH: usize = 16;
 
-/// The lines, arcs, circles and ellipses of a DXF text: LINE, LWPOLYLINE and POLYLINE with their
-/// bulges, ARC, CIRCLE, full ELLIPSE, seen from above, and INSERT of blocks of them; other entities
-/// are counted.
+/// The lines and curves of a DXF text: LINE, LWPOLYLINE and POLYLINE with their bulges, ARC, CIRCLE, ELLIPSE, SPLINE of
+/// degree 1 to 3, seen from above, and INSERT of blocks of them; other entities are counted.
 ///
 /// # Errors
 /// Says where the text is not a DXF.
@@ -70,6 +70,12 @@ fn unit(code: &str) -> Option<&'static str> {
     }
 }
 
+/// The plane of an entity whose normal points down.
+const BEHIND: SvgTransform = SvgTransform([-1.0, 0.0, 0.0, 1.0, 0.0, 0.0]);
+
+/// Most copies of a block that one INSERT makes.
+const MOST_COPIES: f64 = 10_000.0;
+
 #[derive(Default)]
 struct DxfFile {
     entities: Vec<Entity>,
@@ -106,10 +112,12 @@ impl DxfFile {
     ) {
         for entity in entities {
             if entity.kind == "INSERT" {
-                match self.blocks.get(&entity.name).zip(entity.placement()) {
-                    Some(((base, inner), own)) if depth < MAX_DEPTH => {
+                match self.blocks.get(&entity.name).zip(entity.placements()) {
+                    Some(((base, inner), all)) if depth < MAX_DEPTH => {
                         let from_base = SvgTransform([1.0, 0.0, 0.0, 1.0, -base[0], base[1]]);
-                        self.draw(inner, place.after(own).after(from_base), depth + 1, shapes);
+                        for own in all {
+                            self.draw(inner, place.after(own).after(from_base), depth + 1, shapes);
+                        }
                     }
                     _ => shapes.leave_out("INSERT"),
                 }
@@ -117,7 +125,10 @@ impl DxfFile {
             }
             let mut own = PageShapes::default();
             entity.draw(&mut own);
-            place.put(own, shapes);
+            // Those with a plane of their own are seen from behind if its normal points down.
+            let behind = entity.mirrored && !["LINE", "ELLIPSE", "SPLINE"].contains(&&*entity.kind);
+            let own_place = if behind { place.after(BEHIND) } else { place };
+            own_place.put(own, shapes);
         }
     }
 }
@@ -130,8 +141,11 @@ struct Entity {
     /// Vertices with their bulges.
     vertices: Vec<([f64; 2], f64)>,
     numbers: BTreeMap<i32, f64>,
+    /// Of a spline.
+    knots: Vec<f64>,
+    weights: Vec<f64>,
     closed: bool,
-    /// True if it is seen from behind.
+    /// True if its normal points down.
     mirrored: bool,
 }
 
@@ -150,9 +164,12 @@ impl Entity {
                     last.0[1] = coordinate()?;
                 }
             }
+            (40, "SPLINE") => self.knots.push(coordinate()?),
+            (41, "SPLINE") => self.weights.push(coordinate()?),
             (40 | 41 | 50 | 51, "ARC" | "CIRCLE" | "ELLIPSE")
             | (42, "ELLIPSE")
-            | (41 | 42 | 50 | 70 | 71, "INSERT") => {
+            | (71 | 74, "SPLINE")
+            | (41 | 42 | 44 | 45 | 50 | 70 | 71, "INSERT") => {
                 self.numbers.insert(code, coordinate()?);
             }
             (42, _) if polyline => {
@@ -171,10 +188,11 @@ impl Entity {
         Ok(())
     }
 
-    /// Transformation of an INSERT's block; arrays and mirrored ones have none.
-    fn placement(&self) -> Option<SvgTransform> {
+    /// Transformations of an INSERT's block, one for each of its rows and columns.
+    fn placements(&self) -> Option<Vec<SvgTransform>> {
         let number = |code: i32, other: f64| self.numbers.get(&code).copied().unwrap_or(other);
-        if self.mirrored || number(70, 1.0) > 1.0 || number(71, 1.0) > 1.0 {
+        let [columns, rows] = [number(70, 1.0), number(71, 1.0)].map(|n| n.max(1.0));
+        if columns * rows > MOST_COPIES {
             return None;
         }
         let [x, y] = self.vertices.first()?.0;
@@ -186,19 +204,21 @@ impl Entity {
             270.0 => [0.0, -1.0],
             a => [libm::cos(a.to_radians()), libm::sin(a.to_radians())],
         };
-        // As of SVG, where y runs down.
-        Some(SvgTransform([sx * c, -sx * s, sy * s, sy * c, x, -y]))
+        let side = if self.mirrored { BEHIND } else { SvgTransform::NONE };
+        let all = (0..rows as usize).flat_map(|j| (0..columns as usize).map(move |i| [i, j]));
+        let place = |[i, j]: [usize; 2]| {
+            let (u, v) = (i as f64 * number(44, 0.0), j as f64 * number(45, 0.0));
+            let [x, y] = [x + c * u - s * v, y + s * u + c * v];
+            // As of SVG, where y runs down.
+            side.after(SvgTransform([sx * c, -sx * s, sy * s, sy * c, x, -y]))
+        };
+        Some(all.map(place).collect())
     }
 
     fn draw(&self, shapes: &mut PageShapes) {
         let number = |code: i32| self.numbers.get(&code).copied();
         let turn = crate::format::page_shapes::TURN;
         let first = self.vertices.first().map(|v| v.0);
-        let round = ["ARC", "CIRCLE", "ELLIPSE"].contains(&self.kind.as_str());
-        if self.mirrored && (round || self.vertices.iter().any(|v| v.1 != 0.0)) {
-            shapes.leave_out(&format!("{} seen from behind", self.kind));
-            return;
-        }
         match (self.kind.as_str(), first) {
             ("POLYLINE" | "LINE" | "LWPOLYLINE", _) => {
                 // The first vertex of a POLYLINE is its elevation.
@@ -227,13 +247,26 @@ impl Entity {
                 }
             }
             ("ELLIPSE", Some(centre)) => {
-                let whole =
-                    (number(42).unwrap_or(turn) - number(41).unwrap_or(0.0) - turn).abs() < 1e-9;
-                match (self.vertices.get(1), number(40)) {
-                    (Some((a, _)), Some(ratio)) if whole && ratio > 0.0 => {
-                        shapes.rounds.push([centre, *a, [-a[1] * ratio, a[0] * ratio]]);
+                let (from, to) = (number(41).unwrap_or(0.0), number(42).unwrap_or(turn));
+                if let (Some((a, _)), Some(ratio)) = (self.vertices.get(1), number(40))
+                    && ratio > 0.0
+                {
+                    let ratio = if self.mirrored { -ratio } else { ratio };
+                    let b = [-a[1] * ratio, a[0] * ratio];
+                    let sweep = (to - from).rem_euclid(turn);
+                    if sweep < 1e-9 || turn - sweep < 1e-9 {
+                        shapes.rounds.push([centre, *a, b]);
+                    } else {
+                        shapes.elliptical(centre, [*a, b], from, sweep);
                     }
-                    _ => shapes.leave_out("arc of an ELLIPSE"),
+                }
+            }
+            ("SPLINE", _) => {
+                let points: Vec<[f64; 2]> = self.vertices.iter().map(|v| v.0).collect();
+                let degree = number(71).unwrap_or(3.0) as usize;
+                match spline_curves(degree, &self.knots, &points, &self.weights) {
+                    Ok(curves) => shapes.curves.extend(curves),
+                    Err(why) => shapes.leave_out(&why),
                 }
             }
             ("" | "SECTION" | "ENDSEC" | "EOF" | "SEQEND" | "VERTEX", _) => {}

@@ -1,6 +1,8 @@
 //! Shapes of another program's drawing: strokes, and arcs and circles as the curves that a sketch draws into the
 //! corners of lines.
 
+use crate::format::page_curve::PageCurve;
+use crate::format::page_meets::{OwnedCurve, separated};
 use crate::solid::curve::{CurveKind, SketchCurve};
 use crate::{
     DimensionExpr, Drawing, DrawnLine, DrawnPoint, LineTypeSource, PointId, SketchObject, Variable,
@@ -14,6 +16,9 @@ pub type Stroke = [[f64; 2]; 2];
 /// Lines with smaller angles between them, in radians, continue straight.
 const STRAIGHT: f64 = 1e-6;
 
+/// The weight of the corner of a quarter of a circle or ellipse.
+const QUARTER: f64 = std::f64::consts::FRAC_1_SQRT_2;
+
 /// Shapes on the page.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct PageShapes {
@@ -23,6 +28,8 @@ pub struct PageShapes {
     pub arcs: Vec<([[f64; 2]; 3], f64)>,
     /// Circles and ellipses: the centre and two conjugate half-diameters.
     pub rounds: Vec<[[f64; 2]; 3]>,
+    /// Other curves: parts of ellipses, and cubics.
+    pub curves: Vec<PageCurve>,
     /// The stated unit of length of the drawing.
     pub unit: Option<&'static str>,
     /// Numbers of omitted entities, by kind.
@@ -44,6 +51,22 @@ impl PageShapes {
             let a = start + step * k as f64;
             let corner = at(radius / libm::cos(0.5 * step), a + 0.5 * step);
             self.arcs.push(([at(radius, a), corner, at(radius, a + step)], radius));
+        }
+    }
+
+    /// Adds the part of an ellipse with two conjugate half-diameters from an angle of its parameter on.
+    pub fn elliptical(&mut self, centre: [f64; 2], [a, b]: [[f64; 2]; 2], start: f64, sweep: f64) {
+        let parts = (sweep.abs() / FRAC_PI_2 - 1e-9).ceil().max(1.0);
+        let step = sweep / parts;
+        let at = |r: f64, t: f64| {
+            let (x, y) = (r * libm::cos(t), r * libm::sin(t));
+            [0, 1].map(|k| centre[k] + x * a[k] + y * b[k])
+        };
+        let weight = libm::cos(0.5 * step);
+        for k in 0..parts as usize {
+            let t = start + step * k as f64;
+            let corner = [at(1.0, t), at(1.0 / weight, t + 0.5 * step), at(1.0, t + step)];
+            self.curves.push(PageCurve::Conic(corner, weight));
         }
     }
 
@@ -117,9 +140,61 @@ impl PageShapes {
         self.strokes = strokes.into_iter().zip(cuts).flat_map(pieces).collect();
     }
 
+    /// Divides curves and lines where they meet, and curves until no other shape reaches between them and their corners.
+    /// Returns the places where this fails: curves that touch there.
+    pub fn separate(&mut self, tolerance: f64) -> Vec<[f64; 2]> {
+        if self.arcs.is_empty() && self.rounds.is_empty() && self.curves.is_empty() {
+            return Vec::new();
+        }
+        let (arcs, rounds) = (std::mem::take(&mut self.arcs), std::mem::take(&mut self.rounds));
+        let strokes = std::mem::take(&mut self.strokes).into_iter().map(PageCurve::Line);
+        let mut all: Vec<OwnedCurve> = Vec::new();
+        let mut add =
+            |curve: PageCurve, owner: usize| all.push(OwnedCurve { curve, owner, halved: 0 });
+        for (k, (corner, radius)) in arcs.iter().enumerate() {
+            let half = libm::hypot(corner[1][0] - corner[0][0], corner[1][1] - corner[0][1]);
+            add(PageCurve::Conic(*corner, radius / libm::hypot(*radius, half)), k);
+        }
+        for (k, [c, a, b]) in rounds.iter().enumerate() {
+            let at = |s: f64, t: f64| [c[0] + s * a[0] + t * b[0], c[1] + s * a[1] + t * b[1]];
+            for [(s, t), (u, v)] in [[(1.0, 0.0), (0.0, 1.0)], [(0.0, 1.0), (-1.0, 0.0)]] {
+                for sign in [1.0, -1.0] {
+                    let ends = [at(sign * s, sign * t), at(sign * u, sign * v)];
+                    let corner = at(sign * (s + u), sign * (t + v));
+                    add(PageCurve::Conic([ends[0], corner, ends[1]], QUARTER), arcs.len() + k);
+                }
+            }
+        }
+        let others = std::mem::take(&mut self.curves).into_iter().chain(strokes);
+        others.for_each(|curve| add(curve, usize::MAX));
+        let touching = separated(&mut all, tolerance);
+        // Quarters of whole circles and ellipses that are left.
+        let mut quarters = vec![0; rounds.len()];
+        let quarter = |part: &OwnedCurve| {
+            let whole = matches!(part.curve, PageCurve::Conic(_, w) if (w - QUARTER).abs() < 1e-12);
+            part.owner.checked_sub(arcs.len()).filter(|k| *k < rounds.len() && whole)
+        };
+        all.iter().filter_map(quarter).for_each(|k| quarters[k] += 1);
+        for part in all {
+            if let Some(k) = quarter(&part).filter(|k| [0, 4].contains(&quarters[*k])) {
+                if std::mem::take(&mut quarters[k]) == 4 {
+                    self.rounds.push(rounds[k]);
+                }
+                continue;
+            }
+            match (part.curve, arcs.get(part.owner)) {
+                (PageCurve::Line(stroke), _) => self.strokes.push(stroke),
+                (PageCurve::Conic(corner, _), Some(arc)) if arc.0 == corner => self.arcs.push(*arc),
+                (curve, _) => self.curves.push(curve),
+            }
+        }
+        touching
+    }
+
     /// Largest coordinate of the shapes.
     pub fn size(&self) -> f64 {
-        let arcs = self.arcs.iter().flat_map(|a| a.0);
+        let curves = self.curves.iter().flat_map(PageCurve::points).copied();
+        let arcs = self.arcs.iter().flat_map(|a| a.0).chain(curves);
         let rounds = self.rounds.iter().flat_map(|[c, a, b]| {
             [1.0, -1.0].map(|s| {
                 [c[0] + s * (a[0].abs() + b[0].abs()), c[1] + s * (a[1].abs() + b[1].abs())]
@@ -131,7 +206,8 @@ impl PageShapes {
 
     /// Maximum number of lines drawn.
     pub fn line_count(&self) -> usize {
-        self.strokes.len() + 2 * self.arcs.len() + 4 * self.rounds.len()
+        let curves = self.arcs.len() + self.curves.len();
+        self.strokes.len() + 2 * curves + 4 * self.rounds.len()
     }
 
     /// Draws the shapes into an object, with ends within `tolerance` merged: an arc that continues
@@ -141,6 +217,13 @@ impl PageShapes {
         let near =
             |p: [f64; 2], q: [f64; 2]| (p[0] - q[0]).abs().max((p[1] - q[1]).abs()) <= tolerance;
         let mut strokes = self.strokes.clone();
+        let mut curves = Vec::new();
+        self.curves.iter().for_each(|c| c.in_corners(&mut curves));
+        let ends: Vec<[f64; 2]> = (self.strokes.iter().copied())
+            .chain(self.arcs.iter().map(|([p, _, q], _)| [*p, *q]))
+            .chain(curves.iter().map(PageCurve::ends))
+            .flatten()
+            .collect();
         for ([start, corner, end], _) in &self.arcs {
             for at in [start, end] {
                 let straight = |s: &Stroke, k: usize| {
@@ -154,10 +237,10 @@ impl PageShapes {
                         && a[0] * b[0] + a[1] * b[1] > 0.0
                         && cross.abs() <= STRAIGHT * size
                 };
-                let touching = strokes.iter().flatten().filter(|p| near(**p, *at)).count();
+                let meeting = ends.iter().filter(|p| near(**p, *at)).count();
                 let found = (0..strokes.len()).flat_map(|s| [(s, 0), (s, 1)]);
                 let found = found.into_iter().find(|&(s, k)| straight(&strokes[s], k));
-                match found.filter(|_| touching == 1) {
+                match found.filter(|_| meeting == 2) {
                     Some((s, k)) => strokes[s][k] = *corner,
                     None => strokes.push([*at, *corner]),
                 }
@@ -168,6 +251,12 @@ impl PageShapes {
             let ring = [at(-1.0, -1.0), at(1.0, -1.0), at(1.0, 1.0), at(-1.0, 1.0)];
             strokes.extend((0..4).map(|k| [ring[k], ring[(k + 1) % 4]]));
         }
+        for curve in &curves {
+            match curve.corner() {
+                Some([p, m, q]) => strokes.extend([[p, m], [m, q]]),
+                None => strokes.push(curve.ends()),
+            }
+        }
         let (points, lines) = draw(object.draw(), &strokes, tolerance);
         let mut names = Vec::new();
         for ([start, corner, end], radius) in &self.arcs {
@@ -176,7 +265,15 @@ impl PageShapes {
             let ends = [start, end].map(|p| neighbour(&drawing, m, *corner, *p));
             let [Some(a), Some(b)] = ends else { continue };
             let radius = radius_name(object, *radius);
-            names.push(add_curve(object, CurveKind::Arc, vec![a, m, b], Some(radius)));
+            names.push(add_curve(object, CurveKind::Arc, vec![a, m, b], Some(radius), vec![]));
+        }
+        for curve in &curves {
+            let Some(corner) = curve.corner() else { continue };
+            let drawing = object.drawing.clone();
+            let find = corner.map(|p| point_at(&drawing, p, tolerance));
+            let [Some(p), Some(m), Some(q)] = find else { continue };
+            let shape = curve.shape().into_iter().map(DimensionExpr::number).collect();
+            names.push(add_curve(object, CurveKind::Bezier, vec![p, m, q], None, shape));
         }
         for [c, a, b] in &self.rounds {
             let at = |s: f64, t: f64| [c[0] + s * a[0] + t * b[0], c[1] + s * a[1] + t * b[1]];
@@ -184,14 +281,17 @@ impl PageShapes {
             let find = |p| point_at(&drawing, p, tolerance);
             let corners = [find(at(1.0, -1.0)), find(at(-1.0, -1.0)), find(at(-1.0, 1.0))];
             let [Some(p), Some(m), Some(q)] = corners else { continue };
-            let (x, y) = (libm::hypot(a[0], a[1]), libm::hypot(b[0], b[1]));
-            let square =
-                (a[0] * b[0] + a[1] * b[1]).abs() <= 1e-9 * x * y && (x - y).abs() <= 1e-9 * x;
-            let kind = if square { CurveKind::Circle } else { CurveKind::Ellipse };
-            names.push(add_curve(object, kind, vec![p, m, q], None));
+            let kind = if is_circle(*a, *b) { CurveKind::Circle } else { CurveKind::Ellipse };
+            names.push(add_curve(object, kind, vec![p, m, q], None, vec![]));
         }
         (points, lines, names)
     }
+}
+
+/// True if two conjugate half-diameters are those of a circle.
+fn is_circle(a: [f64; 2], b: [f64; 2]) -> bool {
+    let (x, y) = (libm::hypot(a[0], a[1]), libm::hypot(b[0], b[1]));
+    (a[0] * b[0] + a[1] * b[1]).abs() <= 1e-9 * x * y && (x - y).abs() <= 1e-9 * x
 }
 
 /// The point drawn at a position.
@@ -238,6 +338,7 @@ pub(crate) fn add_curve(
     kind: CurveKind,
     points: Vec<PointId>,
     radius: Option<DimensionExpr>,
+    shape: Vec<DimensionExpr>,
 ) -> String {
     let name = object.fresh_name("C");
     let curve = SketchCurve {
@@ -246,6 +347,7 @@ pub(crate) fn add_curve(
         points,
         radius,
         semi: None,
+        shape,
         steps: None,
         replaces: true,
         centripetal: false,

@@ -410,6 +410,11 @@ pub(crate) fn curve_text(c: &SketchCurve) -> String {
     if let Some([m, n]) = &c.semi {
         text.push_str(&format!(" SEMI {} {}", quoted(m.text()), quoted(n.text())));
     }
+    match &c.shape[..] {
+        [w] => text.push_str(&format!(" WEIGHT {}", quoted(w.text()))),
+        [x, y] => text.push_str(&format!(" HANDLES {} {}", quoted(x.text()), quoted(y.text()))),
+        _ => {}
+    }
     if let Some(n) = c.steps {
         text.push_str(&format!(" STEPS {n}"));
     }

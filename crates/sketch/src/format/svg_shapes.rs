@@ -1,5 +1,6 @@
-//! The shapes of an SVG picture: lines, polygons, rectangles, circles, ellipses, and paths of lines and arcs.
+//! The shapes of an SVG picture: lines, polygons, rectangles, circles, ellipses, and paths.
 
+use crate::format::page_curve::{PageCurve, mix};
 use crate::format::page_shapes::PageShapes;
 use crate::format::svg_transform::{SvgTransform, numbers};
 
@@ -118,9 +119,19 @@ fn element(name: &str, attributes: &[(&str, &str)], shapes: &mut PageShapes) -> 
                 shapes.strokes.push([*last, *first]);
             }
         }
-        "rect" if text("rx").or(text("ry")).is_none() => {
+        "rect" => {
             let [x, y] = [number("x")?, number("y")?];
             let [w, h] = [number("width")?, number("height")?];
+            let radii = match (text("rx").is_some(), text("ry").is_some()) {
+                (true, false) => [number("rx")?; 2],
+                (false, true) => [number("ry")?; 2],
+                _ => [number("rx")?, number("ry")?],
+            };
+            let [rx, ry] = [radii[0].min(0.5 * w), radii[1].min(0.5 * h)];
+            if rx > 0.0 && ry > 0.0 {
+                rounded_rectangle([x, -y - h], [w, h], [rx, ry], shapes);
+                return Ok(());
+            }
             let ring = [[x, -y], [x + w, -y], [x + w, -y - h], [x, -y - h]];
             shapes.strokes.extend((0..4).map(|k| [ring[k], ring[(k + 1) % 4]]));
         }
@@ -135,17 +146,46 @@ fn element(name: &str, attributes: &[(&str, &str)], shapes: &mut PageShapes) -> 
             }
         }
         "path" => path(text("d").unwrap_or(""), shapes)?,
-        "svg" | "g" | "title" | "desc" | "a" | "style" | "switch" => {}
+        "svg" | "g" | "title" | "desc" | "a" | "style" | "switch" | "namedview" => {}
         other => shapes.leave_out(other),
     }
     Ok(())
 }
 
-/// A path; its Bézier curves are left out, and counted.
+/// A rectangle by its lowest corner whose corners are quarters of ellipses.
+fn rounded_rectangle(
+    [x, y]: [f64; 2],
+    [w, h]: [f64; 2],
+    [a, b]: [f64; 2],
+    shapes: &mut PageShapes,
+) {
+    let middles = [[x + w - a, y + h - b], [x + a, y + h - b], [x + a, y + b], [x + w - a, y + b]];
+    for (k, [u, v]) in middles.into_iter().enumerate() {
+        let start = k as f64 * std::f64::consts::FRAC_PI_2;
+        match a == b {
+            true => shapes.arc([u, v], a, start, std::f64::consts::FRAC_PI_2),
+            false => {
+                let half = [[a, 0.0], [0.0, b]];
+                shapes.elliptical([u, v], half, start, std::f64::consts::FRAC_PI_2);
+            }
+        }
+    }
+    let lines = [
+        [[x + w - a, y + h], [x + a, y + h]],
+        [[x, y + h - b], [x, y + b]],
+        [[x + a, y], [x + w - a, y]],
+        [[x + w, y + b], [x + w, y + h - b]],
+    ];
+    shapes.strokes.extend(lines.into_iter().filter(|[p, q]| p != q));
+}
+
+/// A path.
 fn path(d: &str, shapes: &mut PageShapes) -> Result<(), String> {
     let mut at = [0.0; 2];
     let mut start = [0.0; 2];
     let mut rest = d.trim_start();
+    // The last control point of a curve, which S and T mirror, and the degree of the curve.
+    let mut handle: Option<([f64; 2], char)> = None;
     let line = |p: [f64; 2], q: [f64; 2], shapes: &mut PageShapes| {
         if p != q {
             shapes.strokes.push([[p[0], -p[1]], [q[0], -q[1]]]);
@@ -170,6 +210,7 @@ fn path(d: &str, shapes: &mut PageShapes) -> Result<(), String> {
             'Z' => {
                 line(at, start, shapes);
                 at = start;
+                handle = None;
                 continue;
             }
             other => return Err(format!("a path has the unknown command {other}")),
@@ -185,12 +226,33 @@ fn path(d: &str, shapes: &mut PageShapes) -> Result<(), String> {
                 'V' => [at[0], if relative { at[1] + n[0] } else { n[0] }],
                 _ => [base[0] + n[count - 2], base[1] + n[count - 1]],
             };
+            let point = |k: usize| [base[0] + n[k], base[1] + n[k + 1]];
+            let mirrored = |degree: char| match handle.filter(|h| h.1 == degree) {
+                Some((h, _)) => [2.0 * at[0] - h[0], 2.0 * at[1] - h[1]],
+                None => at,
+            };
+            let mut next = None;
             match kind {
                 'M' if k == 0 => start = to,
                 'M' | 'L' | 'H' | 'V' => line(at, to, shapes),
                 'A' => path_arc(at, to, n, shapes),
-                _ => shapes.leave_out("Bézier curve of a path"),
+                'C' | 'S' => {
+                    let first = if kind == 'C' { point(0) } else { mirrored('C') };
+                    let second = point(if kind == 'C' { 2 } else { 0 });
+                    let up = |p: [f64; 2]| [p[0], -p[1]];
+                    shapes.curves.push(PageCurve::Cubic([at, first, second, to].map(up)));
+                    next = Some((second, 'C'));
+                }
+                _ => {
+                    let middle = if kind == 'Q' { point(0) } else { mirrored('Q') };
+                    let up = |p: [f64; 2]| [p[0], -p[1]];
+                    let [p, m, q] = [at, middle, to].map(up);
+                    let control = [p, mix(p, m, 2.0 / 3.0), mix(q, m, 2.0 / 3.0), q];
+                    shapes.curves.push(PageCurve::Cubic(control));
+                    next = Some((middle, 'Q'));
+                }
             }
+            handle = next;
             at = to;
         }
     }
@@ -224,7 +286,7 @@ fn arc_numbers(text: &str) -> Result<Vec<f64>, String> {
     Ok(out)
 }
 
-/// An arc by its ends (SVG 1.1, appendix F.6.5); one of an ellipse is left out.
+/// An arc by its ends (SVG 1.1, appendix F.6.5).
 fn path_arc(from: [f64; 2], to: [f64; 2], n: &[f64], shapes: &mut PageShapes) {
     let (rx, ry, large, positive) = (n[0].abs(), n[1].abs(), n[3] != 0.0, n[4] != 0.0);
     if from == to {
@@ -235,7 +297,18 @@ fn path_arc(from: [f64; 2], to: [f64; 2], n: &[f64], shapes: &mut PageShapes) {
         return;
     }
     if (rx - ry).abs() > 1e-9 * rx {
-        shapes.leave_out("elliptical arc of a path");
+        // The arc of a circle in the coordinates of the ellipse.
+        let (s, c) = (libm::sin(n[2].to_radians()), libm::cos(n[2].to_radians()));
+        let k = rx / ry;
+        let into = |[u, v]: [f64; 2]| [c * u + s * v, k * (c * v - s * u)];
+        let back = |[u, v]: [f64; 2]| [c * u - s * v / k, -(s * u + c * v / k)];
+        let mut own = PageShapes::default();
+        path_arc(into(from), into(to), &[rx, rx, 0.0, n[3], n[4]], &mut own);
+        for (corner, radius) in own.arcs {
+            let half = libm::hypot(corner[1][0] - corner[0][0], corner[1][1] - corner[0][1]);
+            let corner = corner.map(|[u, v]| back([u, -v]));
+            shapes.curves.push(PageCurve::Conic(corner, radius / libm::hypot(radius, half)));
+        }
         return;
     }
     let chord = [to[0] - from[0], to[1] - from[1]];

@@ -1,5 +1,6 @@
 //! Transforms of SVG elements (SVG 1.1, chapter 7), applied to shapes of a page.
 
+use crate::format::page_curve::PageCurve;
 use crate::format::page_shapes::PageShapes;
 
 /// The matrix (a c e; b d f) of an element's coordinates, whose y runs down.
@@ -62,8 +63,7 @@ impl SvgTransform {
         Ok(out)
     }
 
-    /// Adds shapes (v up), transformed. Arcs become parts of ellipses under a non-uniform scale and
-    /// are omitted.
+    /// Adds shapes (v up), transformed. Arcs become parts of ellipses under a non-uniform scale.
     pub fn put(self, shapes: PageShapes, into: &mut PageShapes) {
         let [a, b, c, d, e, f] = self.0;
         let way = |[u, v]: [f64; 2]| [a * u - c * v, -(b * u - d * v)];
@@ -78,9 +78,15 @@ impl SvgTransform {
         for (points, radius) in shapes.arcs {
             match alike {
                 true => into.arcs.push((points.map(at), radius * x)),
-                false => into.leave_out("stretched arc"),
+                false => {
+                    let half =
+                        libm::hypot(points[1][0] - points[0][0], points[1][1] - points[0][1]);
+                    let weight = radius / libm::hypot(radius, half);
+                    into.curves.push(PageCurve::Conic(points.map(at), weight));
+                }
             }
         }
+        into.curves.extend(shapes.curves.iter().map(|c| c.mapped(at)));
         let rounds = shapes.rounds.into_iter().map(|[m, p, q]| [at(m), way(p), way(q)]);
         into.rounds.extend(rounds);
         into.unit = into.unit.or(shapes.unit);

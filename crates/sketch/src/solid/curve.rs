@@ -1,4 +1,4 @@
-//! Curves over the points of an object: arc, circle, quadratic, cubic, elliptical arc, ellipse.
+//! Curves over the points of an object: arc, circle, quadratic, cubic, elliptical arc, ellipse, Bézier curve.
 //!
 //! The 1983 products of matrices (align, rotate by 5°, align back) drift and, for the ellipse, lack a
 //! scale; here every curve has its closed form. The printed matrix of the quadratic has a wrong sign:
@@ -9,7 +9,7 @@ use moldloft_num::GAUSS_8_UNIT;
 use moldloft_num::{Real, Vec3};
 use std::collections::BTreeMap;
 
-/// The kinds, numbered as in 1983.
+/// The kinds, the first six numbered as in 1983.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CurveKind {
     /// 1: circular arc tangent to two lines with a common end.
@@ -24,6 +24,8 @@ pub enum CurveKind {
     EllipticalArc,
     /// 6: the full ellipse.
     Ellipse,
+    /// A parabola, a conic or a cubic from the end of one line to that of another, tangent to both.
+    Bezier,
 }
 
 impl CurveKind {
@@ -36,6 +38,7 @@ impl CurveKind {
             CurveKind::Cubic => "CUBIC",
             CurveKind::EllipticalArc => "ELLIPSE ARC",
             CurveKind::Ellipse => "ELLIPSE",
+            CurveKind::Bezier => "BEZIER",
         }
     }
 
@@ -58,12 +61,27 @@ pub struct SketchCurve {
     pub radius: Option<DimensionExpr>,
     /// Distances along the two lines of an ellipse.
     pub semi: Option<[DimensionExpr; 2]>,
+    /// Of a Bézier curve: none for a parabola, the weight of the corner for a conic, or for a cubic the distances of
+    /// its control points from the ends as fractions of the lines.
+    pub shape: Vec<DimensionExpr>,
     /// Number of chords for drawing; `None` to derive it from the tolerance.
     pub steps: Option<u32>,
     /// True if it replaces lines in the solid.
     pub replaces: bool,
     /// Cubic: knots by the square root of the chord instead of uniform.
     pub centripetal: bool,
+}
+
+impl SketchCurve {
+    /// All its numbers.
+    pub fn sizes(&self) -> impl Iterator<Item = &DimensionExpr> {
+        self.radius.iter().chain(self.semi.iter().flatten()).chain(&self.shape)
+    }
+
+    /// All its numbers, to change.
+    pub fn sizes_mut(&mut self) -> impl Iterator<Item = &mut DimensionExpr> {
+        self.radius.iter_mut().chain(self.semi.iter_mut().flatten()).chain(&mut self.shape)
+    }
 }
 
 /// A smooth piece with parameter s in [0, 1].
@@ -196,6 +214,11 @@ pub enum CurveFault {
         /// The greatest radius or distance that fits.
         largest: f64,
     },
+    /// The weight of a conic is not below 1.
+    NoEllipse {
+        /// The weight.
+        value: f64,
+    },
     /// A point is not determined yet.
     Undetermined,
 }
@@ -251,6 +274,10 @@ pub fn trace<T: Real>(
             let pieces = pieces.ok_or(CurveFault::Degenerate)?;
             Ok(Traced { pieces, tangents: None, centre: None })
         }
+        (CurveKind::Bezier, &[first, corner, second]) => {
+            let shape = curve.shape.iter().map(size).collect::<Result<Vec<T>, _>>()?;
+            bezier([first, corner, second], &shape)
+        }
         (_, &[first, corner, second]) => {
             let (to_a, to_b) = (first - corner, second - corner);
             let (long_a, long_b) = (to_a.norm(), to_b.norm());
@@ -269,7 +296,8 @@ pub fn trace<T: Real>(
                 };
                 let reach = long_a.min(long_b).re();
                 let d = radius / half.tan();
-                if d.re() > reach * (1.0 + 1e-12) {
+                // Short arcs of large radii, as drawings have them, reach to their ends only within rounding.
+                if d.re() > reach * (1.0 + 1e-9) {
                     return Err(CurveFault::TooLarge { largest: reach * Real::tan(half.re()) });
                 }
                 let bisector = unit(a + b)?;
@@ -308,6 +336,41 @@ pub fn trace<T: Real>(
         }
         _ => Err(CurveFault::Degenerate),
     }
+}
+
+/// The Bézier curve in a corner from one end to the other, of the shape of [`SketchCurve::shape`].
+fn bezier<T: Real>(
+    [first, corner, second]: [Vec3<T>; 3],
+    shape: &[T],
+) -> Result<Traced<T>, CurveFault> {
+    let (to_a, to_b) = (first - corner, second - corner);
+    if to_a.cross(to_b).norm().re() <= 1e-9 * to_a.norm().re() * to_b.norm().re() {
+        return Err(CurveFault::Degenerate);
+    }
+    let tangents = Some([first, second]);
+    if let &[weight] = shape {
+        if weight.re() >= 1.0 {
+            return Err(CurveFault::NoEllipse { value: weight.re() });
+        }
+        // The affine image of an arc of the unit circle, of the angle whose half has the cosine of the weight.
+        let square = -(weight * weight) + 1.0;
+        let sine = square.sqrt();
+        let centre = corner + (to_a + to_b) / (square * 2.0);
+        let (a, b) = (first - centre, -(to_a * (weight / sine)));
+        let sweep = sine.atan2(weight) * 2.0;
+        let pieces = vec![SmoothPiece::Conic { centre, a, b, sweep }];
+        return Ok(Traced { pieces, tangents, centre: Some(centre) });
+    }
+    let handles = match *shape {
+        [x, y] => [x, y],
+        _ => [T::from(2.0 / 3.0); 2],
+    };
+    if handles.iter().any(|h| h.re() > 1.0) {
+        return Err(CurveFault::TooLarge { largest: 1.0 });
+    }
+    let [p, q] = [first.lerp(corner, handles[0]), second.lerp(corner, handles[1])];
+    let pieces = vec![SmoothPiece::Cubic([first, p, q, second])];
+    Ok(Traced { pieces, tangents, centre: None })
 }
 
 /// The cubic between the second and third of four points with tangents (P3 - P1)/2 and (P4 - P2)/2

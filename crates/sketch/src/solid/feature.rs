@@ -877,7 +877,7 @@ fn one_side<T: Real>(section: &SketchSolid<T>, [p, q]: [Vec3; 2]) -> bool {
 pub fn foreign(object: &SketchObject) -> BTreeSet<String> {
     let values = object.variables.values().map(|v| &v.value);
     let values = values.chain(object.dimensions.values().filter_map(|d| d.value.as_ref()));
-    let sizes = object.curves.values().flat_map(|c| c.radius.iter().chain(c.semi.iter().flatten()));
+    let sizes = object.curves.values().flat_map(|c| c.sizes());
     let feature = object.feature.iter();
     let kinds: Vec<DimensionExpr> = feature.clone().flat_map(|f| f.kind.numbers()).collect();
     let names = |e: &DimensionExpr| e.names().map(str::to_owned).collect::<Vec<_>>();

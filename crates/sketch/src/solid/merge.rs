@@ -114,8 +114,7 @@ pub fn merge(
             let mut c = c.clone();
             c.name = format!("{prefix}{}", c.name);
             c.points.iter_mut().for_each(|p| *p = number[p]);
-            c.radius = c.radius.map(|r| r.renamed(&own));
-            c.semi = c.semi.map(|[a, b]| [a.renamed(&own), b.renamed(&own)]);
+            c.sizes_mut().for_each(|size| *size = size.renamed(&own));
             let twin =
                 |o: &crate::solid::curve::SketchCurve| o.kind == c.kind && o.points == c.points;
             if !out.curves.values().any(twin) {

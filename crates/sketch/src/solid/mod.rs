@@ -362,7 +362,7 @@ impl<T: Real> SolidBuilder<'_, T> {
                 let edges: Vec<_> = p.windows(2).map(|w| (w[0], w[1])).collect();
                 self.bend(k, &edges[1..edges.len() - 1], &traced.pieces)
             }
-            (CurveKind::Arc | CurveKind::EllipticalArc, &[a, m, b]) => {
+            (CurveKind::Arc | CurveKind::EllipticalArc | CurveKind::Bezier, &[a, m, b]) => {
                 let tangents = traced.tangents.ok_or(UnbuiltReason::NoEdge)?;
                 self.corner(k, m, [a, b], tangents, traced.pieces[0])
             }

@@ -201,6 +201,7 @@ pub fn curve(
         points: points.iter().map(|&p| PointId(p)).collect(),
         radius: size.first().filter(|_| corner).cloned(),
         semi: (size.len() == 2).then(|| [size[0].clone(), size[1].clone()]),
+        shape: Vec::new(),
         steps: None,
         replaces: true,
         centripetal: false,

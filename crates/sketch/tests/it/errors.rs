@@ -13,6 +13,12 @@ impl Files for Shelf {
     }
 }
 
+/// A disc that another one touches from inside.
+fn touching_discs() -> String {
+    "0\nSECTION\n0\nCIRCLE\n10\n0\n20\n0\n40\n4\n0\nCIRCLE\n10\n2\n20\n0\n40\n2\n0\nEOF\n"
+        .to_owned()
+}
+
 fn many_lines() -> String {
     let mut text = String::from("0\nSECTION\n");
     for k in 0..6_000 {
@@ -28,6 +34,7 @@ pub fn session() -> SketchSession {
         ("broken.dxf", "LINE\n".to_owned()),
         ("empty.dxf", "0\nSECTION\n0\nEOF\n".to_owned()),
         ("large.dxf", many_lines()),
+        ("touching.dxf", touching_discs()),
         ("far.dxf", "0\nSECTION\n0\nLINE\n10\n0\n20\n0\n11\n3e9\n21\n0\n0\nEOF\n".to_owned()),
         ("again.skt", "RUN \"again.skt\"\n".to_owned()),
         ("two.skt", "SKETCH P\nSKETCH Q\n".to_owned()),

@@ -329,6 +329,8 @@ const CASES: &[(&str, &str)] = &[
     ("", "SAVE"),
     ("BOX", "EXPORT BMP"),
     ("SKETCH A 2D XY", "IMPORT \"far.dxf\""),
+    ("SKETCH A 2D XY", "IMPORT \"touching.dxf\""),
+    ("SKETCH P 2D XY; RECTANGLE 40 20", "BEZIER B CORNER 3 WEIGHT 1.2"),
     ("", "RUN \"again.skt\""),
     ("", "UNDO"),
     ("SKETCH A", "REDO"),

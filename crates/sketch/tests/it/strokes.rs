@@ -90,7 +90,7 @@ fn mix(a: Place, b: Place, s: f64) -> Place {
     [0, 1].map(|k| a[k] + s * (b[k] - a[k]))
 }
 
-/// Fractions of strokes that are wholly right, by noise and family: a little below those of 1 000 strokes each.
+/// Fractions of strokes that are wholly right, by noise and family: a little below those of 250, 100 and 100 strokes each.
 const RATES: [(f64, [f64; 12]); 3] = [
     (0.3, [0.98, 0.96, 0.98, 0.97, 0.97, 0.98, 0.60, 0.94, 0.96, 0.96, 0.97, 0.97]),
     (1.0, [0.91, 0.91, 0.94, 0.92, 0.92, 0.95, 0.40, 0.90, 0.86, 0.78, 0.91, 0.94]),

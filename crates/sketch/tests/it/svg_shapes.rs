@@ -1,5 +1,6 @@
 //! Pictures of SVG as shapes of the page.
 
+use moldloft_sketch::page_curve::PageCurve;
 use moldloft_sketch::parts::{PageShapes, SvgTransform, svg_shapes};
 
 #[test]
@@ -16,7 +17,10 @@ fn transforms_in_their_order() {
     assert!((u - 14.0).abs() < 1e-12 && (v + 34.0).abs() < 1e-12, "{u} {v}");
     assert!((shapes.arcs[0].1 - 2.0).abs() < 1e-12);
     SvgTransform::NONE.with("scale(1 2)").unwrap().put(one, &mut shapes);
-    assert_eq!(shapes.left_out["stretched arc"], 1);
+    // A quarter of a circle becomes one of an ellipse, whose corner has the weight cos 45°.
+    let [PageCurve::Conic(corner, weight)] = shapes.curves[..] else { panic!("{shapes:?}") };
+    assert_eq!(corner, [[1.0, 0.0], [1.0, 2.0], [0.0, 2.0]]);
+    assert!((weight - 0.5_f64.sqrt()).abs() < 1e-15);
     for bad in ["scale", "scale(1", "turn(3)", "rotate(1 2)", "scale(a)"] {
         assert!(SvgTransform::NONE.with(bad).is_err(), "{bad}");
     }
@@ -35,7 +39,16 @@ fn shapes_of_a_picture() {
     let near = |p: [f64; 2], q: [f64; 2]| libm::hypot(p[0] - q[0], p[1] - q[1]) < 1e-9;
     assert!(near(start, [10.0, 0.0]) && near(end, [12.0, -2.0]) && near(corner, [12.0, 0.0]));
     assert!((radius - 2.0).abs() < 1e-12);
-    assert_eq!(shapes.left_out.values().sum::<usize>(), 2);
+    assert_eq!(shapes.left_out.values().sum::<usize>(), 1);
+    // The quadratic curve as a cubic.
+    let cubic = [
+        [12.0, -7.0],
+        [12.0 + 2.0 / 3.0, -7.0 - 2.0 / 3.0],
+        [13.0 + 1.0 / 3.0, -8.0 - 1.0 / 3.0],
+        [14.0, -9.0],
+    ];
+    let [PageCurve::Cubic(found)] = shapes.curves[..] else { panic!("{shapes:?}") };
+    assert!(found.into_iter().zip(cubic).all(|(p, q)| near(p, q)), "{found:?}");
     let text = "<svg><g transform='scale(2)'><g transform='translate(1 0)'><line x2='1'/></g>\
         <line x2='1'/></g><line x2='1'/></svg>";
     let ends: Vec<f64> = svg_shapes(text).unwrap().strokes.iter().map(|s| s[1][0]).collect();
