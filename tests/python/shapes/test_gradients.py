@@ -257,7 +257,7 @@ AHEAD = {
         *("bracket", "caisson", "helmet", "lattice", "lock", "manifold", "rowing_shell"),
         *("spar", "swath"),
     },
-    "implicit": {"lambdas", "manifold", "neck", "quadric", "tee", "wave", "wires"},
+    "implicit": {"lambdas", "lattices", "manifold", "neck", "quadric", "tee", "wave", "wires"},
     "missile": {"finned", "half"},
     "sketch": {"site"},
 }

@@ -520,8 +520,9 @@ fn examples_of_the_libraries_run() {
                     run(&format!("load \"{name}\"\n{}", example.join("\n")));
                     count += 1;
                 } else {
-                    let helper =
-                        ["naca_", "msl_", "grid_", "blade_"].iter().any(|p| line.contains(p));
+                    let helper = ["naca_", "msl_", "grid_", "blade_", "solids_"]
+                        .iter()
+                        .any(|p| line.contains(p));
                     assert!(helper, "{name}: {line} has no example");
                 }
             }

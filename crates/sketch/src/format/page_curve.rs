@@ -213,7 +213,7 @@ fn corner_of([p, a, b, q]: [Place; 4]) -> Option<(Place, [f64; 2])> {
     let v = if near(q, b) { way(a, q) } else { way(b, q) };
     let det = cross(u, v);
     let turn = libm::atan2(det.abs(), dot(u, v));
-    if turn > MOST_TURN || turn < STRAIGHT {
+    if !(STRAIGHT..=MOST_TURN).contains(&turn) {
         return None;
     }
     let to = way(p, q);

@@ -1,6 +1,5 @@
 //! Code of a region: operations on registers, and their source positions.
 
-use super::registers::UNDECLARED;
 use crate::functions::elementary::Elementary;
 use crate::functions::format::FormatPattern;
 use crate::source::module::{Module, Name, RoutineAt};
@@ -33,6 +32,9 @@ impl Relation {
         self as u8 & (less | greater << 1 | equal << 2 | none << 3) != 0
     }
 }
+
+/// Mark of a variable without a declaration.
+pub(super) const UNDECLARED: u32 = 0;
 
 /// The marks that a call copies in one piece.
 pub(super) const FEW: usize = 4;

@@ -7,9 +7,10 @@
 use super::code::{
     ActiveLoop, CallMoves, Captured, CodeArgument, CodeNote, CodeRange, CodeRegion, CodeSite,
     CodeUnit, Generation, NO_LABEL, NamePlace, Poisonable, RegionStart, Relation, ScalarOp,
+    UNDECLARED,
 };
 use super::names::{Meaning, ids};
-use super::registers::{UNDECLARED, declared_by};
+use super::registers::declared_by;
 use crate::functions::elementary::Elementary;
 use crate::source::module::{Modules, Name, RoutineAt};
 use crate::source::scope::Scope;

@@ -1,8 +1,8 @@
 //! Faults of code: their diagnostics, and where the code goes on.
 
-use super::code::{CodeNote, CodeRegion, OF_FILE, ScalarOp};
+use super::code::{CodeNote, CodeRegion, OF_FILE, ScalarOp, UNDECLARED};
 use super::machine::CodeOutcome;
-use super::registers::{RegisterMachine, UNDECLARED, declaration};
+use super::registers::{RegisterMachine, declaration};
 use crate::array::lanes::not_finite;
 use crate::run::interpreter::{Interpreter, silent};
 use crate::value::variables;

@@ -1,8 +1,8 @@
 //! The machine that executes code.
 
-use super::code::{CodeRegion, CodeUnit, NO_LABEL, OF_FILE, Relation, ScalarOp};
+use super::code::{CodeRegion, CodeUnit, NO_LABEL, OF_FILE, Relation, ScalarOp, UNDECLARED};
 use super::registers::{
-    ArrayItems, ArrayRegister, RegisterMachine, UNDECLARED, declaration, declared_by, is_live,
+    ArrayItems, ArrayRegister, RegisterMachine, declaration, declared_by, is_live,
 };
 use super::texts::{ArraysByNumber, formatted};
 use crate::functions::elementary::{Elementary, small_remainder};

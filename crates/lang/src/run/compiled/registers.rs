@@ -1,6 +1,8 @@
 //! The registers of compiled code, and their exchange with the interpreter's variables.
 
-use super::code::{ActiveLoop, Captured, CodeRegion, CodeSite, FEW, NO_LABEL, OF_FILE, Poisonable};
+use super::code::{
+    ActiveLoop, Captured, CodeRegion, CodeSite, FEW, NO_LABEL, OF_FILE, Poisonable, UNDECLARED,
+};
 use crate::run::interpreter::{Interpreter, MOST_CALLS};
 use crate::source::module::Name;
 use crate::source::scope::{Binding, CallFrame, LoopIteration, ScopedBinding};
@@ -38,9 +40,8 @@ pub(super) struct ArrayRegister<T> {
     pub turn: usize,
 }
 
-/// Marks of variables: undeclared, as it was when the region began, or declared by one of the unit's
-/// declarations, which may have failed.
-pub(super) const UNDECLARED: u32 = 0;
+/// Mark of a variable that is as it was when the region began; others are [`UNDECLARED`], or declared by
+/// one of the unit's declarations, which may have failed.
 pub(super) const AS_BEFORE: u32 = 1;
 
 /// Mark of a variable made by that declaration.
