@@ -38,7 +38,7 @@ pub use moldloft_registry_derive::Kind;
 pub use read::{FromValue, MirrorArgument, many};
 pub use refs::{
     CurveRef, DeclaredJoin, FieldRef, Figures, ImplicitFunction, Point, ReparametrizationRef,
-    SetRef, SolidRef, SurfaceRef,
+    SetRef, SolidRef, SurfacePart, SurfaceRef,
 };
 pub use relabelled::relabelled;
 pub use row::{

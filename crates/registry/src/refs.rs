@@ -164,8 +164,19 @@ pub struct SurfaceRef<T: Real> {
     pub figures: Option<Figures>,
     /// For a fillet: the contact lines, snakes on both surfaces, at v = 0 and v = 1.
     pub contacts: Option<Arc<[CurveRef<T>; 2]>>,
+    /// For a part of another surface: that surface and the sides of the part on it.
+    pub part_of: Option<Arc<SurfacePart<T>>>,
     /// Nesting depth of its shapes, itself included.
     pub depth: u32,
+}
+
+/// A part of a surface.
+pub struct SurfacePart<T: Real> {
+    /// The whole surface.
+    pub surface: SurfaceRef<T>,
+    /// The snakes on it along the edges v = 0, u = 1, v = 1, u = 0 of the part; none along an edge that is one point of
+    /// its parameter plane.
+    pub sides: [Option<CurveRef<T>>; 4],
 }
 
 /// An implicit function or set that can be compared with another.
@@ -357,6 +368,7 @@ impl<T: Real> SurfaceRef<T> {
             found: None,
             figures: None,
             contacts: None,
+            part_of: None,
             depth,
         }
     }
@@ -364,6 +376,12 @@ impl<T: Real> SurfaceRef<T> {
     /// The same surface as a fillet between two snakes.
     pub fn with_contacts(mut self, contacts: [CurveRef<T>; 2]) -> Self {
         self.contacts = Some(Arc::new(contacts));
+        self
+    }
+
+    /// The same surface as a part of another.
+    pub fn with_part_of(mut self, part: Option<SurfacePart<T>>) -> Self {
+        self.part_of = part.map(Arc::new);
         self
     }
 

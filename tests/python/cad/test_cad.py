@@ -59,7 +59,7 @@ def test_faces_come_out_of_iges_as_they_are(case: Case, tmp_path: Path) -> None:
     assert found.area == pytest.approx(case.area, rel=3e-6)
 
 
-QUICK = ("gallery/spar.sdl", "gallery/planing.sdl", "sailboat/hull.sdl")
+QUICK = ("gallery/spar.sdl", "gallery/planing.sdl", "gallery/tug.sdl", "sailboat/hull.sdl")
 METRES = {"m": 1.0, "mm": 0.001, "cm": 0.01, "ft": 0.3048, "in": 0.0254}
 
 
@@ -95,6 +95,43 @@ def test_examples_have_their_areas_in_step_and_iges(name: str, tmp_path: Path) -
         assert found.area == pytest.approx(area, rel=1e-6)
         assert found.colours
     assert read(step).closed == text.count("=CLOSED_SHELL(")
+
+
+PARTS = 60 if ROUNDS > 1 else 6
+
+
+@pytest.mark.parametrize("seed", range(PARTS))
+def test_parts_across_a_joint_are_trimmed_faces_of_their_surface(seed: int, tmp_path: Path) -> None:
+    """A nose of revolution cut askew across its joint: the part, its image, and a turned copy."""
+    pytest.importorskip("OCP")
+    from cad_reading import read
+
+    rng = random.Random(seed)
+    nose, length, lean = rng.uniform(0.5, 1.5), rng.uniform(1, 2), rng.uniform(0.1, 0.3)
+    turn = rng.choice(["PI", "1.5*PI", "-PI"])
+    ends = [(0, 0), (1, 1)] if rng.random() < 0.5 else [(1, 0), (0, 1)]
+    # From the tip, where the first side is a point, or from one ring to another.
+    inner = "nose.u0" if rng.random() < 0.5 else "early"
+    text = f"""
+    AbsPoint T({-nose!r}, 0, 0); AbsPoint K({-nose!r}, 0, 1); AbsPoint N(0, 0, 1);
+    AbsPoint E({length!r}, 0, 1); AbsPoint M({length!r}, 0, 0);
+    NURBCurve bow({{T, K, N}}, degree = 2, knots = {{0, 0, 0, 1, 1, 1}},
+        weights = {{1, sqrt(0.5), 1}});
+    Line run(N, E); PolyCurve profile({{bow, run}}); Line axis(T, M);
+    RevSurf nose(profile, axis, 0, {turn}, visible = 0);
+    AbsMagnet a(nose, {0.5 - lean!r}, {ends[0][1]});
+    AbsMagnet b(nose, {0.5 + lean!r}, {ends[1][1]});
+    AbsMagnet c(nose, 0.05, 0); AbsMagnet d(nose, {rng.uniform(0.06, 0.15)!r}, 1);
+    BSnake rim({{a, b}}); LineSnake early(c, d);
+    SubSurf part({{rim, {inner}}});
+    MirrSurf port(part, "z=-3"); RotatSurf other(part, axis, {rng.uniform(0.2, 2)!r}, visible = 0);
+    """
+    model = moldloft.loads(text)
+    (step,) = model.write(tmp_path / "part.step")
+    found = read(step)
+    assert found.valid and found.faces == 2
+    assert found.area == pytest.approx(2 * model.eval("part.area"), rel=3e-6)
+    assert model.eval("part.area") == pytest.approx(model.eval("other.area"), rel=1e-10)
 
 
 def sense(text: str) -> None:

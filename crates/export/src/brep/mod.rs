@@ -82,7 +82,7 @@ pub fn brep_or_facets(
         let help = "hide it, or give it other curves; formats of panels hold it";
         return Err(Diagnostic::error("cannot-write", message).help(help).into());
     }
-    outlines.iter_mut().for_each(|outline| parents::on_parent(document, outline));
+    outlines.iter_mut().for_each(parents::on_parent);
     let faces = faces::all(&outlines, accuracy)?;
     let mut brep = Sewing::new(&outlines, &faces, positions, accuracy, size).finish()?;
     let panelled = document.panelled()?;

@@ -11,5 +11,5 @@ pub use contact::ContactSnake;
 pub use foil::FoilSnake;
 pub use isoparametric::{EdgeSnake, UVSnake, edge, edge_trace};
 pub use more::{ArcSnake, CSnake, ConicSnake, CopySnake, NURBSnake, RelSnake};
-pub use on_surface::OnSurface;
-pub use through::{BSnake, LineSnake};
+pub use on_surface::{OnSurface, PathOnSurface};
+pub use through::{BSnake, LineSnake, on_surface};

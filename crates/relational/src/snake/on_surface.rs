@@ -2,7 +2,7 @@
 
 use moldloft_num::trace::Trace;
 use moldloft_num::{Curve, CurveJet, Order, Real};
-use moldloft_registry::SurfaceRef;
+use moldloft_registry::{CurveRef, SurfaceRef};
 use std::cell::RefCell;
 use std::collections::HashMap;
 
@@ -67,5 +67,20 @@ impl<T: Real, P: Curve<T>> Curve<T> for OnSurface<T, P> {
     }
 
     moldloft_num::curve_facts!(joints_at_breaks, open, not_rational);
+    moldloft_num::curve_one_by_one!(T);
+}
+
+/// The path of a snake in the parameter plane of its surface.
+pub struct PathOnSurface<T: Real> {
+    /// The snake.
+    pub curve: CurveRef<T>,
+}
+
+impl<T: Real> Curve<T> for PathOnSurface<T> {
+    fn jet(&self, t: T, order: Order) -> CurveJet<T> {
+        self.curve.on_surface(t, order).expect("a snake knows its place on its surface")
+    }
+
+    moldloft_num::curve_facts!(breaks of [self.curve], open, not_rational);
     moldloft_num::curve_one_by_one!(T);
 }

@@ -21,6 +21,12 @@ pub(super) fn snake<T: Real>(
     Ok(Value::Curve(CurveRef::snake(shape, surface, nesting)))
 }
 
+/// The nameless snake of a path on a surface.
+pub fn on_surface<T: Real>(surface: &SurfaceRef<T>, path: impl Curve<T> + 'static) -> CurveRef<T> {
+    let shape = OnSurface { surface: surface.clone(), path, trace: Trace::Own([None; 2]) };
+    CurveRef::snake(shape, surface.clone(), 0)
+}
+
 /// A point of the parameter plane.
 pub(super) fn flat<T: Real>([u, v]: [T; 2]) -> Vec3<T> {
     Vec3::new(u, v, T::zero())

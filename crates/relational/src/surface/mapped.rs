@@ -1,12 +1,15 @@
 //! Images of surfaces, point by point, under maps of space.
 
+use crate::snake::{PathOnSurface, on_surface};
 use moldloft_num::trace::Key;
 use moldloft_num::{Axis, Order, Real, SurfJet, Surface, Vec3};
 use moldloft_registry::{
-    Build, CallError, Context, Kind, MirrorArgument, Point, SurfaceRef, Value,
+    Build, CallError, Context, CurveRef, Kind, MirrorArgument, Point, SurfacePart, SurfaceRef,
+    Value,
 };
 
 /// An affine map of p to `to` + A (p - `from`).
+#[derive(Clone)]
 enum AffineTransform<T: Real> {
     /// A turn about an axis, with the cosine and sine of its angle.
     Turn(Axis<T>, T, T),
@@ -117,6 +120,20 @@ impl<T: Real> Surface<T> for Image<T> {
     moldloft_num::surface_facts!(breaks of [self.surface], closed of [self.surface], rational of [self.surface]);
 }
 
+/// The image of a surface: that of a part is a part of the image of the whole surface.
+fn image<T: Real>(surface: SurfaceRef<T>, map: AffineTransform<T>, nesting: u32) -> Value<T> {
+    let part = surface.part_of.as_ref().map(|part| {
+        let whole = Image { surface: part.surface.clone(), map: map.clone() };
+        let whole = SurfaceRef::new(whole, nesting);
+        let moved = |side: &Option<CurveRef<T>>| {
+            side.clone().map(|curve| on_surface(&whole, PathOnSurface { curve }))
+        };
+        let sides = part.sides.each_ref().map(moved);
+        SurfacePart { surface: whole, sides }
+    });
+    Value::Surface(SurfaceRef::new(Image { surface, map }, nesting).with_part_of(part))
+}
+
 /// The mirror image of a surface in a plane, line or point, point by point.
 ///
 /// A plane or point reverses the natural normal; panels keep the orientation of the original.
@@ -137,8 +154,7 @@ pub struct MirrSurf<T: Real> {
 
 impl<T: Real> Build<T> for MirrSurf<T> {
     fn build(self, context: &Context) -> Result<Value<T>, CallError> {
-        let image = Image { surface: self.surface, map: AffineTransform::Reflection(self.mirror) };
-        Ok(Value::Surface(SurfaceRef::new(image, context.nesting)))
+        Ok(image(self.surface, AffineTransform::Reflection(self.mirror), context.nesting))
     }
 }
 
@@ -166,8 +182,7 @@ pub struct RotatSurf<T: Real> {
 impl<T: Real> Build<T> for RotatSurf<T> {
     fn build(self, context: &Context) -> Result<Value<T>, CallError> {
         let (c, s) = super::revolved::cos_sin(self.angle);
-        let image = Image { surface: self.surface, map: AffineTransform::Turn(self.line, c, s) };
-        Ok(Value::Surface(SurfaceRef::new(image, context.nesting)))
+        Ok(image(self.surface, AffineTransform::Turn(self.line, c, s), context.nesting))
     }
 }
 
@@ -214,8 +229,7 @@ impl<T: Real> Build<T> for CopySurf<T> {
                 .in_field(Self::SX));
         }
         let map = AffineTransform::Stretch { from: from.xyz, to: to.xyz, factors };
-        let image = Image { surface, map };
-        Ok(Value::Surface(SurfaceRef::new(image, context.nesting)))
+        Ok(image(surface, map, context.nesting))
     }
 }
 

@@ -3,15 +3,18 @@
 use super::corners;
 use super::masters::along;
 use crate::arguments::{Side, Snake, common_surface};
+use crate::curve::Segment;
 use crate::seam;
-use crate::snake::edge_trace;
+use crate::snake::{edge_trace, on_surface};
 use moldloft_num::period::within;
 use moldloft_num::trace::{Edge, Edges, Key, Mark, Root, Trace};
 use moldloft_num::{
     Bi1, InnerPlane, Jet, Order, Real, SurfJet, Surface, Vec3, lift_curve, line_crossings,
     surface_jet_of,
 };
-use moldloft_registry::{Build, CallError, Context, CurveRef, FieldId, Kind, SurfaceRef, Value};
+use moldloft_registry::{
+    Build, CallError, Context, CurveRef, FieldId, Kind, SurfacePart, SurfaceRef, Value,
+};
 
 /// The part of a surface between snakes and magnets on it: S(u, v) = P(w(u, v)), with P the surface
 /// and w a patch of its parameter plane.
@@ -77,7 +80,8 @@ impl<T: Real> Build<T> for SubSurf<T> {
             }
         };
         shape.check_folds()?;
-        Ok(Value::Surface(SurfaceRef::new(shape, context.nesting)))
+        let part = shape.part();
+        Ok(Value::Surface(SurfaceRef::new(shape, context.nesting).with_part_of(part)))
     }
 }
 
@@ -242,6 +246,32 @@ impl<T: Real> SubPatch<T> {
     /// The parent surface.
     pub fn surface(&self) -> &SurfaceRef<T> {
         &self.surface
+    }
+
+    /// The surface and the sides on it; `None` for a patch that continues beyond its seams.
+    fn part(&self) -> Option<SurfacePart<T>> {
+        let snake = |side: &Side<T>| match side {
+            Side::Snake(snake) => Some(snake.curve.clone()),
+            Side::Magnet(_) => None,
+        };
+        let straight = |sides: &[Side<T>; 2], t: f64| {
+            let [from, to] = [0, 1].map(|k| end(&sides[k], t));
+            let apart = |x: T, y: T| x.re() != y.re();
+            let path = Segment { from, to };
+            (apart(from.x, to.x) || apart(from.y, to.y)).then(|| on_surface(&self.surface, path))
+        };
+        let plain = |turns: &SeamTurns| turns.crossings.is_empty() && turns.base == [0.0; 2];
+        let sides = match &self.layout {
+            SideLayout::Between(_) if !self.turns.iter().all(plain) => return None,
+            SideLayout::Between(sides) => {
+                [snake(&sides[0]), straight(sides, 1.0), snake(&sides[1]), straight(sides, 0.0)]
+            }
+            SideLayout::Round(sides) => {
+                [Some(&sides[0]), Some(&sides[1]), Some(&sides[2]), sides.get(3)]
+                    .map(|side| side.and_then(snake))
+            }
+        };
+        Some(SurfacePart { surface: self.surface.clone(), sides })
     }
 
     /// The parameters on the surface.
