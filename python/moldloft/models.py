@@ -630,6 +630,53 @@ class Model(Differentiable, Floating, Writable, Adapted):
         made = self._document.mesh(wanted, whole, tolerance, angle)
         return Mesh(made, symmetry="" if whole else self.symmetry)
 
+    def united(self, *, tolerance: float | None = None, angle: float | None = None) -> Model:
+        """The outer skin of bodies that overlap or touch, as a model of one body, ``body``.
+
+        Both sides of a symmetric model are one whole. Panels are cut along the intersections of the
+        bodies, and those inside are left out; the others stay as they are. Figures are those of the
+        panels: a finer ``tolerance`` comes nearer to the surfaces.
+
+        Parameters
+        ----------
+        tolerance, angle
+            As for :meth:`mesh`.
+
+        Returns
+        -------
+        Model
+            The body of panels, in the model's units; it floats, is measured and is written as any
+            other.
+
+        Raises
+        ------
+        ModelError
+            If the model is not whole.
+        Error
+            If a body is open or faces inward, or if faces of three bodies or more nearly touch.
+
+        Examples
+        --------
+        >>> import moldloft
+        >>> m = moldloft.loads('''
+        ... AbsPoint A(0, 0, -1); AbsPoint B(0, 0, 1); AbsPoint C(1, 0, -1);
+        ... Arc half(A, {1, 0, 0}, B, type = 1); Line axis(A, B); RevSurf ball(half, axis, 0, 2*PI);
+        ... CopySurf other(ball, A, C, 1, 1, 1);
+        ... ''')
+        >>> round(m.united(tolerance=1e-3).hydrostatics(level=2).volume, 2)  # 9/4 pi
+        7.06
+        """
+        import numpy as np
+
+        from moldloft.exchange.mesh_files import mesh_statement
+        from moldloft.loading import loads
+
+        points, faces = self._document.mesh([], True, tolerance, angle).united()
+        units = " ".join(word for word, _ in self._document.units())
+        head = f'Model info(units = "{units}");\n' if units else ""
+        listed = ", ".join(f"{{{x!r}, {y!r}, {z!r}}}" for x, y, z in points.tolist())
+        return loads(head + mesh_statement("{" + listed + "}", faces.astype(np.int64)))
+
     def inner_skins(self) -> list[_core.Diagnostic]:
         """Plates of the skin inside a body, and overlapping bodies.
 

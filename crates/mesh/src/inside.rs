@@ -163,7 +163,7 @@ impl SkinPiece {
 }
 
 /// Where a line from `p` to `q` pierces a triangle: its part of the length, between 0 and 1.
-fn pierced(p: Vec3, q: Vec3, [a, b, c]: [Vec3; 3]) -> Option<f64> {
+pub(crate) fn pierced(p: Vec3, q: Vec3, [a, b, c]: [Vec3; 3]) -> Option<f64> {
     let (line, normal) = (q - p, (b - a).cross(c - a));
     let (from, to) = (normal.dot(p - a), normal.dot(q - a));
     if (from < 0.0) == (to < 0.0) {
@@ -176,7 +176,7 @@ fn pierced(p: Vec3, q: Vec3, [a, b, c]: [Vec3; 3]) -> Option<f64> {
 }
 
 /// The solid angle of a triangle seen from the origin.
-fn solid_angle([a, b, c]: [Vec3; 3]) -> f64 {
+pub(crate) fn solid_angle([a, b, c]: [Vec3; 3]) -> f64 {
     let [x, y, z] = [a, b, c].map(Vec3::norm);
     let across = a.dot(b.cross(c));
     let along = x * y * z + a.dot(b) * z + b.dot(c) * x + c.dot(a) * y;

@@ -49,6 +49,7 @@ mod skin;
 mod sum;
 mod topology;
 mod triangulate;
+mod union;
 mod volume;
 
 pub use closure::{Closes, Closure, EdgeName, OpenEdge, closure};
@@ -57,7 +58,7 @@ pub use inside::{InnerSkin, inner_skins};
 pub use measure::{Measures, measure, measure_patch};
 pub use mesh::Mesh;
 pub use panel::Panel;
-pub use planar::planar_triangles;
+pub use planar::{planar_triangles, planar_triangles_along};
 pub use pulled::pulled_measures;
 pub use quality::{
     PatchQuality, Statistics, WorstPanel, pulled_quality, qualities, quality, worst_quality,
@@ -67,6 +68,7 @@ pub use sagitta::sagittas;
 pub use section::{Polyline, section, section_where};
 pub use topology::{Block, Patch, PatchInfo, Tag, Topology, TopologyBuilder, is_triangle};
 pub use triangulate::triangulate;
+pub use union::{NotUnited, UnitedSkin, united};
 pub use volume::{
     BadCell, BlockFace, BlockQuality, Blocks, BlocksReport, Boundary, HexBlock, Hexahedron,
     Interface, interfaces_of,

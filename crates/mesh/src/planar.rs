@@ -40,6 +40,25 @@ pub fn planar_triangles(
     loops: &[Vec<usize>],
     inner: &[usize],
 ) -> Vec<[usize; 3]> {
+    triangles(points, loops, &[], inner)
+}
+
+/// As [`planar_triangles`], with `lines` inside the region as edges of triangles; empty, too, if one of them crosses another
+/// one or an edge of a loop.
+pub fn planar_triangles_along(
+    points: &[[f64; 2]],
+    loops: &[Vec<usize>],
+    lines: &[[usize; 2]],
+) -> Vec<[usize; 3]> {
+    triangles(points, loops, lines, &[])
+}
+
+fn triangles(
+    points: &[[f64; 2]],
+    loops: &[Vec<usize>],
+    lines: &[[usize; 2]],
+    inner: &[usize],
+) -> Vec<[usize; 3]> {
     // Coincident vertices are one.
     let mut placed: HashMap<[u64; 2], usize> = HashMap::new();
     let mut corners: Vec<PlanarVertex> = Vec::new();
@@ -66,6 +85,7 @@ pub fn planar_triangles(
             }
         }
     }
+    edges.extend(lines.iter().map(|line| line.map(&mut corner_of)).filter(|[a, b]| a != b));
     let mut crossed = false;
     let made =
         ConstrainedDelaunayTriangulation::<PlanarVertex>::try_bulk_load_cdt(corners, edges, |_| {

@@ -1,11 +1,12 @@
 //! Meshes: arrays and their report.
 
 use crate::arrays;
+use crate::error::plain_error;
 use crate::work::unlocked_if;
 use moldloft::document::Panelled;
 use moldloft::mesh::{
     Block, Closes, Mesh, PatchInfo, PatchQuality, Statistics, TopologyBuilder, WorstPanel, closure,
-    measure, measure_patch, qualities,
+    measure, measure_patch, qualities, united,
 };
 use numpy::{PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
@@ -104,6 +105,18 @@ impl PyMesh {
     fn patches<'py>(slf: &Bound<'py, Self>) -> PyResult<Vec<Bound<'py, PyDict>>> {
         let all = Self::of_mesh(slf, qualities)?;
         all.iter().enumerate().map(|(k, q)| slf.get().patch(slf.py(), k, q.as_ref())).collect()
+    }
+
+    /// Vertices and faces of the outer skin of its bodies.
+    fn united<'py>(
+        slf: &Bound<'py, Self>,
+    ) -> PyResult<(Bound<'py, PyArray2<f64>>, Bound<'py, PyArray2<u32>>)> {
+        let skin = Self::of_mesh(slf, united)?.map_err(plain_error)?;
+        let (py, points) = (slf.py(), &skin.positions);
+        let vertices = arrays::filled(py, [points.len(), 3], |out| out.copy_from_slice(points)).0;
+        let faces = PyArray2::<u32>::zeros(py, [skin.faces.len(), 4], false);
+        faces.readwrite().as_slice_mut()?.copy_from_slice(skin.faces.as_flattened());
+        Ok((vertices, faces))
     }
 
     /// Open edges, by patch and edge; the remedy of each; and whether these are all.

@@ -63,6 +63,9 @@ def add(parser: argparse.ArgumentParser) -> None:
     )
     add_name(files)
     files.add_argument(
+        "--united", action="store_true", help="one skin of the panels of bodies that overlap"
+    )
+    files.add_argument(
         "--keep-going",
         action="store_true",
         help="write as much as possible: the other formats, and the model without the objects that "
@@ -199,6 +202,9 @@ def _build(
             progress.stage("reporting")
             return _report_errors(model, options)
         model.partial = options.keep_going
+        if options.united:
+            progress.stage("uniting")
+            model = model.united()
         progress.stage("making panels")
         mesh = model.mesh(tags=options.tag)
         progress.stage("measuring")

@@ -146,6 +146,11 @@ def add(parser: argparse.ArgumentParser) -> None:
         "--kh", metavar="FOLDER", help="write the stiffness as KH.dat and Hydrostatics.dat of Nemoh"
     )
     parser.add_argument(
+        "--united",
+        action="store_true",
+        help="one skin of bodies that overlap; figures are those of its panels",
+    )
+    parser.add_argument(
         "--keep-going",
         action="store_true",
         help="figures of an incomplete model: with failed objects, or a skin open below the water",
@@ -226,6 +231,9 @@ def run(options: argparse.Namespace) -> int:
         if model.has_errors and not options.keep_going:
             return 1
         model.partial = options.keep_going
+        if options.united:
+            progress.stage("uniting")
+            model = model.united()
         progress.stage("floating")
         if options.weights and options.displacement is None:
             _take_weights(model, options)

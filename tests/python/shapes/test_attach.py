@@ -337,3 +337,30 @@ def test_panels_of_patches_have_derivatives(seed: int) -> None:
             areas.append(model.mesh().area)
         model.set({name: base})
         assert found == pytest.approx((areas[1] - areas[0]) / (2 * step), rel=1e-5, abs=1e-6), text
+
+
+def test_an_appendage_across_a_knuckle_between_two_surfaces() -> None:
+    model = moldloft.loads(
+        """load "attach.sdl"
+        param float x = 4 in [3, 5];
+        AbsPoint A(0, 0, 0); AbsPoint B(4, 0, 0.4); AbsPoint C(0, 4, 0); AbsPoint D(4, 4, 0.4);
+        AbsPoint E(8, 0, 0); AbsPoint F(8, 4, 0); Line a(A, C); Line b(B, D); Line e(E, F);
+        RuledSurf left(a, b, visible = 0); RuledSurf right(b, e, visible = 0);
+        PolySurf plate({left, right}, "v", visible = 0);
+        AbsPoint P(x, 2, -1); AbsPoint Q(x, 2, 3); AbsPoint G(x + 0.5, 2, -1);
+        AbsPoint H(x + 0.5, 2, 3); Line axis(P, Q); Line rule(G, H);
+        RevSurf pipe(rule, axis, 0, 2*PI, visible = 0);
+        attach weld(plate, pipe); SubSurf leg({weld.rim, pipe.u1});
+        """
+    )
+    numbered = None
+    for x in (4.0, 4.2, 3.3, 4.5, 4.9):
+        model["x"] = x
+        area = sum(model[name].area for name in PATCHES)
+        exact = 8 * np.sqrt(16.16) - np.pi / 4 * np.sqrt(1.01)
+        assert area == pytest.approx(exact, rel=1e-8)
+        mesh = model.mesh()
+        # The border of the plate and the end of the leg are open.
+        assert len(mesh.summary["open_loops"]) == 2 and not model.junctions()
+        numbered = mesh.faces if numbered is None else numbered
+        assert np.array_equal(mesh.faces, numbered)

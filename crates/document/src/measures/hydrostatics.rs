@@ -221,7 +221,7 @@ impl Document {
                     format!(
                         "the bodies of `{skin}` and `{around}` overlap, {place}: their common volume counts twice"
                     ),
-                    "cut both along their intersection (IntSnake), or move one of them",
+                    "cut both along their intersection (IntSnake), or unite their panels: m.united(), --united",
                 ),
             };
             let mut fault = Diagnostic::warning(id, message).help(help).object(skin);
