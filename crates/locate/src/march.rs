@@ -93,6 +93,9 @@ impl Branch {
     }
 }
 
+/// Distance in parameters from a crease of the start of a branch that would begin on it.
+const BESIDE: f64 = 1e-4;
+
 /// The most steps of a branch.
 const MOST_STATIONS: usize = 20_000;
 
@@ -546,7 +549,9 @@ impl<'a> Crossing<'a> {
                 });
             let Some(next) = next else {
                 if let Some(both) = self.crease(&lines, &last, guess, sign) {
-                    self.extend_over_crease(&mut all, both);
+                    if self.over_crease(&mut all, &start, both, sign) {
+                        return (all, BranchEnd::Closed);
+                    }
                     since = 0;
                     continue;
                 }
@@ -573,12 +578,14 @@ impl<'a> Crossing<'a> {
                     continue;
                 };
                 if let Some(both) = self.crease(&lines, &last, station.q, sign) {
-                    self.extend_over_crease(&mut all, both);
+                    if self.over_crease(&mut all, &start, both, sign) {
+                        return (all, BranchEnd::Closed);
+                    }
                     since = 0;
                     continue;
                 }
                 // The start may be between the last station and the edge.
-                if all.len() > 2 && self.passes(&start, [&last, &station], sign, step) {
+                if all.len() > 2 && self.passes(&start, [&last, &station], sign) {
                     self.close(&mut all, &lines, start, sign);
                     return (all, BranchEnd::Closed);
                 }
@@ -596,13 +603,15 @@ impl<'a> Crossing<'a> {
                 }
                 continue;
             }
-            if all.len() > 2 && self.passes(&start, [&last, &next], sign, step) {
+            if all.len() > 2 && self.passes(&start, [&last, &next], sign) {
                 self.close(&mut all, &lines, start, sign);
                 return (all, BranchEnd::Closed);
             }
             if let Some(both) = self.crease(&lines, &last, next.q, sign) {
                 // A bend within the step: the continuation is on one side of it.
-                self.extend_over_crease(&mut all, both);
+                if self.over_crease(&mut all, &start, both, sign) {
+                    return (all, BranchEnd::Closed);
+                }
                 since = 0;
                 continue;
             }
@@ -614,20 +623,31 @@ impl<'a> Crossing<'a> {
         (all, BranchEnd::Lost)
     }
 
-    /// True if the branch passes its start between two stations, a step apart at most.
-    fn passes(
+    /// Continues a branch to both stations at a crease, or closes it if its start is in front of them.
+    fn over_crease(
         &self,
+        branch: &mut Vec<TracePoint>,
         start: &TracePoint,
-        [last, next]: [&TracePoint; 2],
+        both: [TracePoint; 2],
         sign: f64,
-        step: f64,
     ) -> bool {
+        let last = *branch.last().expect("it begins with the start");
+        let closes = branch.len() > 2 && self.passes(start, [&last, &both[0]], sign);
+        match closes {
+            true => branch.push(*start),
+            false => self.extend_over_crease(branch, both),
+        }
+        closes
+    }
+
+    /// True if the branch passes its start between two stations.
+    fn passes(&self, start: &TracePoint, [last, next]: [&TracePoint; 2], sign: f64) -> bool {
         let [before, after] =
             [last, next].map(|station| (station.x - start.x).dot(start.tangent) * sign);
-        if !(before < 0.0 && after >= 0.0 && start.x.distance(last.x) <= 1.01 * step) {
+        let (away, way) = (start.x - last.x, next.x - last.x);
+        if !(before < 0.0 && after >= 0.0 && away.norm() <= 1.01 * way.norm()) {
             return false;
         }
-        let (away, way) = (start.x - last.x, next.x - last.x);
         let share = away.dot(way) / way.norm_sq();
         // Near a pole one step spans a large part of the turn.
         let same = |k: usize| {
@@ -859,6 +879,7 @@ impl<'a> Crossing<'a> {
                 seed[k] = edge;
             }
         }
+        let seed = self.beside_crease(seed);
         // Shapes that touch cross at such angles within the rounding of the position.
         let start = self.station(seed).filter(|_| self.direction(seed).norm() >= TANGENT)?;
         let (mut forward, end) = self.walk(start, 1.0);
@@ -873,6 +894,18 @@ impl<'a> Crossing<'a> {
         }
         stations.extend(forward.drain(1..));
         Some(Branch { stations, ends: [begin, end] })
+    }
+
+    /// A seed, or a point of the branch beside it where it is on a crease: there the branch has two directions.
+    fn beside_crease(&self, seed: Unknowns) -> Unknowns {
+        let on = |(k, value): &(usize, f64)| (seed[*k] - value).abs() <= SAME_POINT;
+        let mut lines = self.lines().into_iter().filter(on);
+        let Some((k, value)) = lines.find(|&(k, value)| self.creased(seed, k, value)) else {
+            return seed;
+        };
+        let inside = |q: &Unknowns| q[..self.unknowns()].iter().all(|x| (0.0..=1.0).contains(x));
+        let beside = [BESIDE, -BESIDE].map(|by| self.at_line(seed, k, value + by));
+        beside.into_iter().flatten().find(inside).unwrap_or(seed)
     }
 
     /// The point of the intersection near the point (u, v) of the first surface, in the plane of

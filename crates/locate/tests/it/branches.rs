@@ -5,6 +5,7 @@ use moldloft_locate::branches::{Branches, CutSurface};
 use moldloft_locate::march::{Branch, BranchEnd, Crossing, Other};
 use moldloft_num::{Box3, Jet, Order, Plane, Surface, SurfaceFormula, Vec3};
 use moldloft_spline::{BSplineSurface, KnotVector};
+use moldloft_testing::rounds;
 
 fn v(x: f64, y: f64, z: f64) -> Vec3 {
     Vec3::of(x, y, z)
@@ -415,5 +416,59 @@ fn a_branch_that_begins_beside_the_seam_is_followed_once() {
         let chords = branch.stations.windows(2).map(|s| s[0].x.distance(s[1].x));
         let circle = std::f64::consts::TAU * own;
         moldloft_testing::close_relative(chords.sum::<f64>(), circle, 0.01);
+    }
+}
+
+/// Two planes that meet in a ridge along y, `slope` down to either side.
+fn ridge_roof(slope: f64) -> BSplineSurface<f64> {
+    let ends = KnotVector::clamped_uniform(1, 2).unwrap();
+    let three = KnotVector::clamped_uniform(1, 3).unwrap();
+    let at = |x: f64, y: f64| v(x, y, -slope * x.abs());
+    let net = [-2.0, 0.0, 2.0].into_iter().flat_map(|x| [at(x, -2.0), at(x, 2.0)]).collect();
+    BSplineSurface::new(three, ends, net, None).unwrap()
+}
+
+#[test]
+fn a_closed_branch_over_a_ridge_is_walked_once_from_any_start() {
+    let mut random = Random::new(11);
+    for round in 0..rounds(400, 20_000) {
+        let slope = if round % 4 == 0 { 0.0 } else { random.between(0.1, 2.0) };
+        let radius = random.between(0.3, 1.2);
+        let centre = v(random.between(-0.25, 0.25), random.between(-0.5, 0.5), 0.0);
+        let pipe = Cylinder { centre, radius, half: 6.0, axis: 2 };
+        let roof = ridge_roof(slope);
+        let crossing = Crossing::with_surface(&roof, &pipe);
+        // Near the ridge or the seam of the pipe, or anywhere.
+        let near = random.signed() * 10f64.powf(-random.between(0.0, 13.0));
+        let ridge = (-centre.x / radius).acos();
+        let a = match random.below(3) {
+            0 => near,
+            1 => [ridge, -ridge][random.below(2)] + near,
+            _ => random.between(0.0, std::f64::consts::TAU),
+        };
+        let turn = (a / std::f64::consts::TAU).rem_euclid(1.0);
+        let x = centre + v(a.cos(), a.sin(), 0.0) * radius;
+        let height = -slope * x.x.abs();
+        let seed = [0.25 * (x.x + 2.0), 0.25 * (x.y + 2.0), turn, (height / 6.0 + 1.0) * 0.5];
+        let branch = crossing.branch(seed).unwrap();
+        assert!(
+            branch.closed(),
+            "round {round}: {:?} {} from {a}, ridge {ridge} {slope}",
+            branch.ends,
+            branch.stations.len()
+        );
+        let steps = 4000;
+        let on = |k: usize| {
+            let a = std::f64::consts::TAU * k as f64 / steps as f64;
+            let x = centre + v(a.cos(), a.sin(), 0.0) * radius;
+            v(x.x, x.y, -slope * x.x.abs())
+        };
+        let exact: f64 = (0..steps).map(|k| on(k).distance(on(k + 1))).sum();
+        let found = length(&branch);
+        assert!(
+            (found / exact - 1.0).abs() < 0.01,
+            "round {round}: {found} {exact} from {a}, ridge {ridge} {slope} {radius} {centre:?}, {:?}",
+            branch.stations.iter().map(|s| (s.q[2], s.q[0])).collect::<Vec<_>>()
+        );
     }
 }
