@@ -26,7 +26,10 @@ pub fn remark<T: Scalar>(
     match object.value()? {
         // A curve made of a single point object is a point on purpose, and so are its parts.
         Value::Curve(curve)
-            if object.parents.len() != 1 && is_point(curve) && !is_part(object, graph) =>
+            if object.parents.len() != 1
+                && is_point(curve)
+                && !is_along_pole(curve)
+                && !is_part(object, graph) =>
         {
             Some((
                 "zero-length",
@@ -69,6 +72,13 @@ fn is_point<T: Real>(curve: &CurveRef<T>) -> bool {
     let first = at(0.0);
     let size = largest(first);
     PLACES.iter().chain(&[1.0]).all(|t| first.distance(at(*t)) <= ONE_PLACE * size)
+}
+
+/// True for a snake along the pole of its surface: a side of a part of it.
+fn is_along_pole<T: Real>(curve: &CurveRef<T>) -> bool {
+    let at = |t: f64| curve.on_surface(T::from(t), Order::Zero).map(|[w, ..]| w.re());
+    let ends = at(0.0).zip(at(1.0));
+    ends.is_some_and(|(from, to)| from.distance(to) > ONE_PLACE)
 }
 
 /// True for a surface that is degenerate to a line or point.

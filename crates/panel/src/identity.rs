@@ -133,10 +133,17 @@ impl Identities {
             for k in 0..4 {
                 let one = match &draft.edges.edges[k] {
                     Edge::Pieces(pieces) => {
-                        self.one_point(pieces.iter().flat_map(|p| match p.root {
+                        let segments = pieces.iter().flat_map(|p| match p.root {
                             Root::Segment(a, b) => [Some(a), Some(b)],
                             _ => [None, None],
-                        }))
+                        });
+                        // A snake along the pole of its surface is a point.
+                        let ends = pieces.iter().flat_map(|p| {
+                            [p.from, p.to].map(|m| m.point.or_else(|| p.root.end(m.t.re())))
+                        });
+                        self.one_point(segments).or_else(|| {
+                            self.one_point(ends).filter(|_| has_no_length(&draft.surface, k))
+                        })
                     }
                     Edge::Own => {
                         let made = draft.surface.edge_made_of(k);

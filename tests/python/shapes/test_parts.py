@@ -349,3 +349,30 @@ def test_a_part_round_a_projected_foil_misses_the_area_of_the_foil() -> None:
         p = m["root"](np.linspace(0, 1, 40_001))
         foil = float(np.trapezoid(p[:, 1], p[:, 0]))
         assert m.eval("skin.area") + foil == pytest.approx(m.eval("hull.area"), abs=1e-8)
+
+
+@pytest.mark.parametrize(("low", "high"), [(5, 4), (3, 8), (1, 1), (6, 6)])
+def test_sectors_of_a_pole_have_divisions_of_their_own(low: int, high: int) -> None:
+    """Two parts that meet along a line from the pole, which is one vertex."""
+    text = f"""
+    AbsPoint A(0, 0, 0); AbsPoint B(4, 2, 0.5); AbsPoint C(4, -2, 0.3); AbsPoint D(4, 0, -1);
+    Line z(A, A); BCurve l({{B, D, C}}, 2); RuledSurf bottom(z, l, visible = 0);
+    AbsMagnet p0(bottom, 0, 0); AbsMagnet pm(bottom, 0.5, 0); AbsMagnet p1(bottom, 1, 0);
+    AbsMagnet e0(bottom, 0, 1); AbsMagnet em(bottom, 0.5, 1); AbsMagnet e1(bottom, 1, 1);
+    LineSnake tip0(p0, pm); LineSnake tip1(pm, p1); LineSnake side0(p0, e0);
+    LineSnake middle(pm, em); LineSnake side1(p1, e1); LineSnake end0(e0, em);
+    LineSnake end1(em, e1);
+    SubSurf port({{tip0, middle, end0, side0}}, divisions = {{{low}, 6}});
+    SubSurf star({{tip1, side1, end1, middle}}, divisions = {{{high}, 6}});
+    """
+    model = moldloft.loads(text)
+    assert not model.diagnostics
+    mesh = model.mesh()
+    assert len(mesh.vertices) == 6 * (low + high + 1) + 1
+    (rim,) = mesh.summary["open_loops"]
+    assert rim["edges"] == low + high + 12 and not model.junctions()
+    # Triangles at the pole.
+    (pole,) = np.flatnonzero(np.linalg.norm(mesh.vertices, axis=1) == 0)
+    at_pole = mesh.faces[(mesh.faces == pole).any(axis=1)]
+    assert len(at_pole) == low + high
+    assert all(len(set(face)) == 3 for face in at_pole.tolist())
