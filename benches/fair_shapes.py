@@ -15,7 +15,7 @@ from collections.abc import Callable
 
 import numpy as np
 from fair_truth import METHODS as PEERS
-from fair_truth import Curve, Floats, distances, ours
+from fair_truth import Curve, Floats, bends, changes, distances, ours, runs
 
 DENSE = np.linspace(-0.01, 1.01, 20001)
 COUNTS = (15, 31, 61)
@@ -68,24 +68,9 @@ def counted(curve: Curve, most: float) -> tuple[int, int]:
     A curvature counts from 2 % of ``most`` on, a reversal from 1 % of the range, which is none
     below 1 % of it.
     """
-    t = np.linspace(0.005, 0.995, 1481)
-    h = 1e-4
-    before, here, after = curve(t - h), curve(t), curve(t + h)
-    d1, d2 = (after - before) / (2 * h), (after - 2 * here + before) / h**2
-    bend = (d1[:, 0] * d2[:, 1] - d1[:, 1] * d2[:, 0]) / np.linalg.norm(d1, axis=1) ** 3
-    signs = np.sign(bend[np.abs(bend) > 0.02 * most])
-    inflections = int((signs[1:] != signs[:-1]).sum())
-    if np.ptp(bend) <= 0.01 * most:
-        return inflections, 1
-    floor = 0.01 * np.ptp(bend)
-    pieces, way, low, high = 1, 0, bend[0], bend[0]
-    for x in bend:
-        low, high = min(low, x), max(high, x)
-        if way >= 0 and high - x > floor:
-            pieces, way, low = pieces + (way > 0), -1, x
-        elif way <= 0 and x - low > floor:
-            pieces, way, high = pieces + (way < 0), 1, x
-    return inflections, pieces
+    bend = bends(curve, np.linspace(0.005, 0.995, 1481))
+    straight = np.ptp(bend) <= 0.01 * most
+    return changes(bend, 0.02 * most), 1 if straight else runs(bend, 0.01 * np.ptp(bend))
 
 
 def cases(shape: Curve, noise: float, seeds: int) -> list[Floats]:
@@ -108,10 +93,8 @@ def main() -> None:
         inner = shape(np.linspace(0, 1, 2001))
         length = float(np.linalg.norm(np.diff(inner, axis=0), axis=1).sum())
         noise = 1e-3 * length
-        d1 = np.gradient(inner, axis=0)
-        d2 = np.gradient(d1, axis=0)
-        bend = (d1[:, 0] * d2[:, 1] - d1[:, 1] * d2[:, 0]) / np.linalg.norm(d1, axis=1) ** 3
-        most = max(float(np.abs(bend[5:-5]).max()), 0.05 / length)
+        bend = bends(shape, np.linspace(0.0025, 0.9975, 1991))
+        most = max(float(np.abs(bend).max()), 0.05 / length)
         data = cases(shape, noise, seeds)
         row = []
         for method in METHODS.values():

@@ -137,17 +137,20 @@ def form(curve: Curve, n: int = 3001) -> tuple[int, int]:
     t = np.linspace(0, 1, 8001)
     arc = np.concatenate([[0], np.cumsum(np.linalg.norm(np.diff(curve(t), axis=0), axis=1))])
     t = np.interp(np.linspace(0.01, 0.99, n) * arc[-1], arc, t)
-    h = 1e-4
-    before, here, after = curve(t - h), curve(t), curve(t + h)
-    d1, d2 = (after - before) / (2 * h), (after - 2 * here + before) / h**2
-    speed = np.linalg.norm(d1, axis=1)
-    if here.shape[1] == 2:
-        bend = (d1[:, 0] * d2[:, 1] - d1[:, 1] * d2[:, 0]) / speed**3
-    else:
-        bend = np.linalg.norm(np.cross(d1, d2), axis=1) / speed**3
+    bend = bends(curve, t)
     most = float(np.abs(bend).max())
-    signs = np.sign(bend[np.abs(bend) > 1e-3 * most])
     floor = max(0.01 * np.ptp(bend), 0.02 * most)
+    return changes(bend, 1e-3 * most), runs(bend, floor)
+
+
+def changes(bend: Floats, least: float) -> int:
+    """Changes of the sign of values above ``least``."""
+    signs = np.sign(bend[np.abs(bend) > least])
+    return int((signs[1:] != signs[:-1]).sum())
+
+
+def runs(bend: Floats, floor: float) -> int:
+    """Monotone runs of values, where reversals above ``floor`` count."""
     pieces, way, low, high = 1, 0, bend[0], bend[0]
     for x in bend:
         low, high = min(low, x), max(high, x)
@@ -155,7 +158,18 @@ def form(curve: Curve, n: int = 3001) -> tuple[int, int]:
             pieces, way, low = pieces + (way > 0), -1, x
         elif way <= 0 and x - low > floor:
             pieces, way, high = pieces + (way < 0), 1, x
-    return int((signs[1:] != signs[:-1]).sum()), pieces
+    return pieces
+
+
+def bends(curve: Curve, t: Floats) -> Floats:
+    """The curvature, signed for plane curves, by central differences."""
+    h = 1e-4
+    before, here, after = curve(t - h), curve(t), curve(t + h)
+    d1, d2 = (after - before) / (2 * h), (after - 2 * here + before) / h**2
+    speed = np.linalg.norm(d1, axis=1)
+    if here.shape[1] == 2:
+        return (d1[:, 0] * d2[:, 1] - d1[:, 1] * d2[:, 0]) / speed**3
+    return np.linalg.norm(np.cross(d1, d2), axis=1) / speed**3
 
 
 def ours(**options: object) -> Callable[[Floats, float], Curve]:

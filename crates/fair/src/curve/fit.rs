@@ -4,7 +4,7 @@ use crate::error::check_finite;
 use crate::optimum::HeldDirections;
 use crate::optimum::problem::{self, NormBounds, Problem};
 use crate::{FairError, Motion, RowNorm, Space, SparseRows};
-use moldloft_num::{Real, Vec3};
+use moldloft_num::{Order, Real, Vec3};
 use moldloft_spline::KnotVector;
 
 /// Parametrisation of data points.
@@ -406,9 +406,15 @@ pub fn fit_rational(
 /// The basis functions at parameters, as rows over the control points.
 pub(crate) fn values(space: &Space, parameters: &[f64]) -> SparseRows {
     let mut rows = SparseRows::new();
+    // Neighbours are mostly on one span.
+    let mut local = None;
     for &t in parameters {
         let (k, t) = space.locate(t);
-        let basis = space.basis(k, t);
+        if local.as_ref().is_none_or(|(span, _)| *span != k) {
+            local = Some((k, space.local_knots(k)));
+        }
+        let Some((_, knots)) = &local else { continue };
+        let basis = knots.basis_in(space.degree(), t, Order::Zero);
         rows.push(space.columns(k).zip(basis.rows[0].iter().copied()));
     }
     rows
