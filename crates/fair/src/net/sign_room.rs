@@ -11,7 +11,7 @@ use crate::{FairError, RowNorm, SparseRows};
 use moldloft_num::Vec3;
 
 /// Rounds of weights.
-const ROUNDS: usize = 3;
+const ROUNDS: usize = 4;
 
 /// Miss of a sign, relative to what the tolerances let it vary, below which it is kept, and which the
 /// weights of missed signs take as small.
@@ -99,9 +99,17 @@ impl SignRoom {
                 let others = &half.entries[..half.entries.len() - 1];
                 (half.room - sum(others, &solution.x)) / half.scale.max(f64::MIN_POSITIVE)
             };
-            room.missed = (0..signs).map(|j| miss(j) > MISSED).collect();
-            room.tight = problem.halves[first..].iter().map(|h| inside(h) < TIGHT).collect();
-            room.moves = solution.x[..count].iter().map(|&x| frame.up(x)).collect();
+            // What a sign is missed by may be less than its unknown, where a search ends early.
+            let missed: Vec<bool> =
+                problem.halves[first..].iter().map(|h| inside(h) < -MISSED).collect();
+            let lost = |all: &[bool]| -> f64 {
+                all.iter().zip(costs).filter(|(missed, _)| **missed).map(|(_, cost)| cost).sum()
+            };
+            if room.moves.is_empty() || lost(&missed) < lost(&room.missed) {
+                room.missed = missed;
+                room.tight = problem.halves[first..].iter().map(|h| inside(h) < TIGHT).collect();
+                room.moves = solution.x[..count].iter().map(|&x| frame.up(x)).collect();
+            }
             if !room.missed.contains(&true) {
                 break;
             }
