@@ -278,7 +278,8 @@ pub(super) fn body_at<T: Real>(
             valid(body).map_err(NoBody::Flaw)?
         }
     };
-    made.balanced().map_err(NoBody::Combine)
+    // What was combined is balanced already.
+    if made.facets.is_some() { Ok(made) } else { made.balanced().map_err(NoBody::Combine) }
 }
 
 impl Feature {
