@@ -9,8 +9,8 @@ use super::{SketchSolid, SolidFace};
 use crate::PointId;
 use moldloft_num::{Box3, Real, Vec3};
 
-/// Chords of an edge, seen along the axis of a hole.
-const CHORDS: usize = 64;
+/// Maximum number of chords of an edge.
+const MOST_CHORDS: f64 = 512.0;
 
 /// Distance below which a hole and an edge are intersected, as a fraction of the hole's radius.
 const APART: f64 = 1e-3;
@@ -137,9 +137,8 @@ struct Shadow {
     size: f64,
 }
 
-/// Chords of the edges; `None` if a curve may be farther from its chords than a hole from it.
+/// Chords of the edges, as near to them as a hole may be; `None` if these are too many.
 fn edge_chords<T: Real>(body: &SketchSolid<T>, clear: f64) -> Option<Vec<Vec<Vec3>>> {
-    let step = 1.0 / CHORDS as f64;
     let chords = |e: usize| {
         let second = match body.edges[e].piece {
             None => 0.0,
@@ -152,8 +151,9 @@ fn edge_chords<T: Real>(body: &SketchSolid<T>, clear: f64) -> Option<Vec<Vec<Vec
                 6.0 * bend(p, q, r).max(bend(q, r, e))
             }
         };
-        let near = second * step * step / 8.0 <= APART / 2.0 * clear;
-        near.then(|| body.polyline(e, CHORDS).iter().map(|p| p.re()).collect())
+        let parts = (second / (8.0 * APART / 2.0 * clear)).sqrt().ceil();
+        (parts <= MOST_CHORDS)
+            .then(|| body.polyline(e, parts as usize).iter().map(|p| p.re()).collect())
     };
     (0..body.edges.len()).map(chords).collect()
 }
@@ -309,7 +309,7 @@ fn around<T: Real>(body: &SketchSolid<T>) -> Box3 {
     let curves = body.edges.iter().filter_map(|e| e.piece).flat_map(|piece| match piece {
         SmoothPiece::Conic { centre, a, b, .. } => {
             let [c, a, b] = [centre, a, b].map(Vec3::re);
-            let wide = Vec3::from([0, 1, 2].map(|k| a[k].hypot(b[k])));
+            let wide = Vec3::from([0, 1, 2].map(|k| (a[k] * a[k] + b[k] * b[k]).sqrt()));
             vec![c - wide, c + wide]
         }
         SmoothPiece::Cubic(points) => points.map(Vec3::re).to_vec(),
