@@ -244,7 +244,7 @@ impl Shadow {
     }
 
     /// True if points are at one distance from a line along the axis.
-    fn is_cylinder<'a>(&self, centre: Vec3, points: &mut dyn Iterator<Item = &'a Vec3>) -> bool {
+    fn is_cylinder(&self, centre: Vec3, points: &mut dyn Iterator<Item = &Vec3>) -> bool {
         let centre = self.flat(centre);
         let mut radii = points.map(|p| self.flat(*p).distance(centre));
         let Some(first) = radii.next() else { return false };
