@@ -138,14 +138,14 @@ def flange() -> None:
     sketch.run(FLANGE)
 
     def one(k):
-        sketch.run(f"SET DRILLED.HOLE1 {11 + 0.01 * k}")
+        sketch.run(f"SET DRILLED.HOLE2 {11 + 0.01 * k}")
         assert sketch.objects["DRILLED"]["volume"]
 
     def every(k):
         x = 0.01 * k
         with sketch.drag():
             sketch.run(f"SET FLANGE.DIAMETER1 {120 + x}; SET DISC.EXTRUDE1 {12 + x}")
-            sketch.run(f"SET BORED.HOLE1 {40 + x}; SET DRILLED.HOLE1 {11 + x}")
+            sketch.run(f"SET BORED.HOLE1 {40 + x}; SET DRILLED.HOLE2 {11 + x}")
         assert sketch.objects["DRILLED"]["volume"]
 
     print(f"a hole of a flange with nine  {median(9, one):8.1f} ms")

@@ -275,6 +275,17 @@ impl PySketch {
         Ok(replies.into_iter().map(|r| answer(py, r)).collect())
     }
 
+    /// Begins a run of lines.
+    fn hold(&self, py: Python<'_>) {
+        self.lock(py).hold();
+    }
+
+    /// Ends it: the warnings of features without a body.
+    fn settle<'py>(&self, py: Python<'py>) -> PyResult<Vec<Answer<'py>>> {
+        let replies = self.long(py, |s| s.settle())?;
+        Ok(replies.into_iter().map(|r| answer(py, r)).collect())
+    }
+
     /// The answers to a line, and its changes as JSON.
     fn report<'py>(
         &self,
@@ -291,9 +302,11 @@ impl PySketch {
         self.lock(py).begin().map_err(|fault| plain_error(fault.text))
     }
 
-    /// Ends it, and returns its changes.
-    fn commit(&self, py: Python<'_>) -> PyResult<Vec<Changed>> {
-        Ok(self.long(py, |s| s.commit())?.into_iter().map(changed).collect())
+    /// Ends it, and returns warnings and its changes.
+    fn commit<'py>(&self, py: Python<'py>) -> PyResult<(Vec<Answer<'py>>, Vec<Changed>)> {
+        let report = self.long(py, |s| s.commit())?;
+        let replies = report.replies.into_iter().map(|r| answer(py, r)).collect();
+        Ok((replies, report.changes.into_iter().map(changed).collect()))
     }
 
     /// Ends it as if it had not been.

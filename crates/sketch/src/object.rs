@@ -1,6 +1,6 @@
 //! One named object: a drawing, its dimensions, faces and curves.
 
-use crate::feature::{Feature, FeatureOperand};
+use crate::feature::{Feature, FeatureKind, FeatureOperand};
 use crate::identifier::identifier;
 use crate::solid::curve::SketchCurve;
 use crate::{
@@ -188,6 +188,18 @@ impl SketchObject {
             }
         }
         None
+    }
+
+    /// True for a body that is combined of others, also if it was placed then.
+    pub fn is_combined(&self) -> bool {
+        let Some(feature) = &self.feature else { return false };
+        match feature.kind {
+            FeatureKind::Boolean(_) | FeatureKind::Pattern { .. } | FeatureKind::Hole(_) => true,
+            FeatureKind::Place(_) | FeatureKind::OnFace(_) => {
+                feature.operands.first().is_some_and(|o| o.object.is_combined())
+            }
+            _ => false,
+        }
     }
 
     /// The drawing, mutable.

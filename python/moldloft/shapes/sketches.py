@@ -168,6 +168,8 @@ class Sketch:
     def run(self, text: str, *, strict: bool = True) -> list[Reply]:
         """Run one or more lines of commands.
 
+        The bodies of features that they change are made once, after the last line.
+
         Parameters
         ----------
         text
@@ -186,12 +188,19 @@ class Sketch:
             For the first refused command.
         """
         replies: list[Reply] = []
-        for line in text.splitlines():
-            new = [Reply.from_row(row) for row in self._session.run_line(line)]
-            replies += new
-            bad = next((r for r in new if r.is_error), None)
-            if strict and bad is not None:
-                raise SketchError(str(bad), replies)
+        bad: Reply | None = None
+        self._session.hold()
+        try:
+            for line in text.splitlines():
+                new = [Reply.from_row(row) for row in self._session.run_line(line)]
+                replies += new
+                bad = next((r for r in new if r.is_error), None)
+                if strict and bad is not None:
+                    break
+        finally:
+            replies += [Reply.from_row(row) for row in self._session.settle()]
+        if strict and bad is not None:
+            raise SketchError(str(bad), replies)
         return replies
 
     def save(self, path: str | os.PathLike[str]) -> Path:
@@ -864,10 +873,13 @@ class Drag:
     ----------
     changes
         Total change, after the end.
+    replies
+        Warnings of features that lost their bodies, after the end.
     """
 
     def __init__(self, sketch: Sketch) -> None:
         self.changes: list[ObjectChange] = []
+        self.replies: list[Reply] = []
         self._sketch = sketch
 
     def move(self, point: int, u: float, v: float) -> None:
@@ -890,7 +902,9 @@ class Drag:
         if kind is not None:
             self._sketch.session.rollback()
             return
-        self.changes = [ObjectChange._of(row) for row in self._sketch.session.commit()]
+        replies, changes = self._sketch.session.commit()
+        self.replies = [Reply.from_row(row) for row in replies]
+        self.changes = [ObjectChange._of(row) for row in changes]
 
 
 def _pairs(name: str, values: ArrayLike, kind: type[np.generic]) -> NDArray[Any]:

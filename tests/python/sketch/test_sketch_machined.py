@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import math
 import os
+import random
 
 import pytest
 
@@ -16,7 +17,8 @@ from scipy.integrate import quad
 
 from moldloft import Sketch
 from sketch_machined import MACHINED, OFFSETS, PASSING, halves, numbered
-from sketch_ordinary import Sizes, measures
+from sketch_ordinary import FAMILIES, Sizes, measures
+from sketch_treated import TREATED
 
 SOAK = os.environ.get("MOLDLOFT_SOAK") == "1"
 
@@ -68,6 +70,44 @@ def test_numbers_pass_through_tangency(family: str) -> None:
             assert found["volume"] == pytest.approx(volume, rel=BOUND), (k, t)
             if family != "breakout" or t != 0.0:
                 assert found["area"] == pytest.approx(area, rel=10 * BOUND), (k, t)
+
+
+class Changed(Sizes):
+    """The sizes of a seed, each changed by up to 2 %: what is built of them is the same."""
+
+    def __init__(self, seed: str, change: int) -> None:
+        super().__init__(seed)
+        self.other = random.Random(f"{seed} change {change}") if change else None
+
+    def __call__(self, low: float, high: float) -> float:
+        size = super().__call__(low, high)
+        return size if self.other is None else round(size * self.other.uniform(0.98, 1.02), 3)
+
+
+#: Forty kinds of ordinary parts.
+KINDS = {**FAMILIES, **MACHINED, **TREATED}
+
+
+@pytest.mark.parametrize("family", KINDS if SOAK else ("lug", "keyway", *TREATED))
+def test_all_numbers_change(family: str) -> None:
+    seed = f"{family} changes"
+    sketch = Sketch()
+    values: list[float] = []
+    for change in range(21 if SOAK else 3):
+        part = KINDS[family](Changed(seed, change))
+        text, new = numbered(part.text)
+        if change == 0:
+            sketch.run(text)
+        else:
+            assert len(new) == len(values)
+            changed = [j for j, x in enumerate(new) if x != values[j]]
+            with sketch.drag():
+                sketch.run("\n".join(f"SET TABLE.N{j} {new[j]!r}" for j in changed))
+        values = new
+        volume, area = measures(part.solid)
+        found = sketch.objects[part.name]
+        assert found["volume"] == pytest.approx(volume, rel=BOUND), (change, part.text)
+        assert found["area"] == pytest.approx(area, rel=10 * BOUND), (change, part.text)
 
 
 def test_halves_are_the_whole() -> None:

@@ -408,11 +408,12 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             let full = format!("{}.solid", names.prefix);
             self.env.sketch_bodies.insert(full, Arc::new(plain.clone()));
         }
-        // A set of faces knows cylinders and cones by their straight borders only: a body with round faces that others
-        // have cut is the set of those that it is combined of.
+        // A set of faces knows cylinders and cones by their straight borders only: a body with round faces that is
+        // combined of others is the set of those.
         let closed = !body.flat && mesh.report().closed;
+        let round = body.faces.iter().any(|f| f.ruled) && object.is_combined();
         match key.filter(|_| closed) {
-            Some(key) if body.trims.is_empty() => {
+            Some(key) if body.trims.is_empty() && !round => {
                 let args = face_arguments(body, &mesh, key);
                 self.part(names, "body", "FaceSet", args, false);
             }

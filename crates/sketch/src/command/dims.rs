@@ -7,7 +7,7 @@ use super::draw::{require_line, require_lines, require_point, set_letters};
 use super::question::Question;
 use super::session::{CommandReply, SketchSession};
 use super::subject::{ReplySubject, all_missing};
-use super::words::{Command, CommandToken, CommandTokenKind, UNITS};
+use super::words::{Command, CommandTokenKind, UNITS};
 use crate::dimension::layout::{REFERENCE_NAME, agree};
 use crate::{
     CoordinateAxis, Dimension, DimensionExpr, DimensionFault, DimensionRole, MeasuredQuantity,
@@ -247,11 +247,30 @@ impl SketchSession {
         Ok(())
     }
 
-    /// True if a command that begins with this word is the value for an open question: a number, or
-    /// an expression in quotes.
-    pub(super) fn is_value(&self, first: &CommandToken) -> bool {
+    /// True if a command is the value for an open question: a number, an expression in quotes, or the name of a
+    /// number alone.
+    pub(super) fn is_value(&self, command: &Command) -> bool {
+        let first = &command.tokens[0];
         let asked = matches!(self.question, Some(Question::Dimension { .. }));
-        asked && matches!(first.kind, CommandTokenKind::Number(..) | CommandTokenKind::Text)
+        asked
+            && match first.kind {
+                CommandTokenKind::Number(..) | CommandTokenKind::Text => true,
+                CommandTokenKind::Word => {
+                    command.tokens.len() == 1
+                        && super::verbs::row(&first.text.to_ascii_uppercase()).is_none()
+                        && self.names_number(&first.text)
+                }
+            }
+    }
+
+    /// True if a word is a number of the active object, or of another one as `object.number`.
+    fn names_number(&self, word: &str) -> bool {
+        let own = self.active_object().is_some_and(|o| o.has_number(word));
+        let other = || {
+            let (of, number) = word.split_once('.')?;
+            Some(self.state.called(&of.to_ascii_lowercase())?.has_number(number))
+        };
+        own || other() == Some(true)
     }
 
     /// Takes the value that answers a question.

@@ -1,7 +1,7 @@
 //! Objects that follow others: a body that is made of objects of the session takes over their changes.
 
 use super::CommandError;
-use super::session::{CommandReply, SessionState, SketchSession};
+use super::session::{SessionState, SketchSession};
 use super::subject::ReplySubject;
 use crate::feature::{EdgeChoice, FaceChoice, Feature, FeatureKind};
 use crate::identifier::identifier;
@@ -49,7 +49,7 @@ impl SketchSession {
         Ok(())
     }
 
-    /// Gives the objects that follow changed ones their present states, and warns of those that lose their bodies.
+    /// Gives the objects that follow changed ones their present states. Those that had bodies are checked later.
     pub(super) fn follow(&mut self, before: &SessionState) {
         if !self.state.outside.is_empty() {
             return;
@@ -69,10 +69,8 @@ impl SketchSession {
             self.state.objects.extend(new);
         }
         for key in changed {
-            let object = Arc::clone(&self.state.objects[&key]);
-            let had = self.had_body(before, &key);
-            if let (true, Err(why)) = (had, self.worked(&object).body()) {
-                self.out.push(CommandReply::warning_of(super::no_body::no_body(&object, why)));
+            if self.had_body(before, &key) {
+                self.unchecked.entry(key).or_insert(false);
             }
         }
     }

@@ -16,6 +16,7 @@ use crate::{
 };
 use moldloft_diag::Severity;
 use moldloft_syntax::number::plain;
+use std::sync::Arc;
 
 /// Largest gap of planes that may be one, in standard deviations of a drawn coordinate.
 const NEAR_PLANES: f64 = 4.0;
@@ -286,11 +287,24 @@ impl SketchSession {
                 }
             }
         }
+        // The body of a feature is made once after several changes.
+        if object.feature.is_some() && self.running > 0 && self.state.outside.is_empty() {
+            self.unchecked.insert(object.name.to_lowercase(), true);
+            return Ok(());
+        }
+        self.report_body(&object, added);
+        Ok(())
+    }
+
+    /// Reports why a finished object has no body, faces that are not plane and curves that are not built in.
+    fn report_body(&mut self, object: &Arc<SketchObject>, added: bool) {
+        let worked = self.worked(object);
+        let (planes, layout) = (&worked.view.planes, &worked.layout);
         let finished = object.feature.is_some() || (layout.complete() && !object.faces.is_empty());
         if let Err(why) = worked.body()
             && finished
         {
-            let mut reply = CommandReply::warning_of(no_body(&object, why));
+            let mut reply = CommandReply::warning_of(no_body(object, why));
             if added && matches!(why, NoBody::Flaw(SolidDefect::Open(_))) {
                 reply.severity = Severity::Note;
             }
@@ -318,7 +332,20 @@ impl SketchSession {
                 self.out.push(super::curves::unbuilt_reply(unbuilt));
             }
         }
-        Ok(())
+    }
+
+    /// Makes the bodies of the features that changed, and warns of those that have none.
+    pub(super) fn check_bodies(&mut self) -> Vec<CommandReply> {
+        let outer = std::mem::take(&mut self.out);
+        for (key, own) in std::mem::take(&mut self.unchecked) {
+            let Some(object) = self.state.objects.get(&key).map(Arc::clone) else { continue };
+            if own {
+                self.report_body(&object, false);
+            } else if let Err(why) = self.worked(&object).body() {
+                self.out.push(CommandReply::warning_of(no_body(&object, why)));
+            }
+        }
+        std::mem::replace(&mut self.out, outer)
     }
 
     pub(super) fn why(&mut self, args: &mut Args) -> Result<(), CommandError> {

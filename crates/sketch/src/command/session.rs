@@ -204,6 +204,7 @@ impl Worked {
 pub(super) struct Transaction {
     pub(super) before: SessionState,
     pub(super) journal: usize,
+    pub(super) unchecked: IndexMap<String, bool>,
 }
 
 /// Runs commands on objects.
@@ -241,6 +242,10 @@ pub struct SketchSession {
     pub(crate) out: Vec<CommandReply>,
     /// A run of edits that count as one.
     pub(super) transaction: Option<Transaction>,
+    /// Runs of lines that are open, one in the other.
+    pub(super) running: usize,
+    /// Features to be checked after them, by folded name; true for those whose numbers were changed.
+    pub(super) unchecked: IndexMap<String, bool>,
 }
 
 /// Commands that only look: an open question stays open.
@@ -321,15 +326,27 @@ impl SketchSession {
             recorded: None,
             out: Vec::new(),
             transaction: None,
+            running: 0,
+            unchecked: IndexMap::new(),
         }
     }
 
     /// Runs a line: one or more commands, or a part of one that ends in `&`. A refused command
-    /// changes nothing; those after it in the line are run.
+    /// changes nothing; those after it in the line are run. The bodies of features that they change are
+    /// made once, after the line.
     pub fn run_line(&mut self, line: &str) -> Vec<CommandReply> {
         if line.contains('\n') {
             return self.run_text(line);
         }
+        self.hold();
+        let mut replies = self.run_one_line(line);
+        let said = |lost: &CommandReply| replies.iter().any(|r| r.text == lost.text);
+        let lost: Vec<_> = self.settle().into_iter().filter(|lost| !said(lost)).collect();
+        replies.extend(lost);
+        replies
+    }
+
+    fn run_one_line(&mut self, line: &str) -> Vec<CommandReply> {
         if self.depth == 0 {
             self.written.clear();
         }
@@ -355,16 +372,33 @@ impl SketchSession {
         replies
     }
 
-    /// Runs a text line by line.
+    /// Runs a text line by line, as one run.
     pub fn run_text(&mut self, text: &str) -> Vec<CommandReply> {
-        text.lines().flat_map(|line| self.run_line(line)).collect()
+        self.hold();
+        let mut replies: Vec<_> = text.lines().flat_map(|line| self.run_line(line)).collect();
+        replies.extend(self.settle());
+        replies
+    }
+
+    /// Begins a run of lines: features that they change are checked when [`settle`](SketchSession::settle) ends it.
+    pub fn hold(&mut self) {
+        self.running += 1;
+    }
+
+    /// Ends a run of lines, and warns of the features without a body. In a series of edits this waits for
+    /// [`commit`](SketchSession::commit).
+    pub fn settle(&mut self) -> Vec<CommandReply> {
+        self.running = self.running.saturating_sub(1);
+        let open = self.running > 0 || self.transaction.is_some();
+        if open { vec![] } else { self.check_bodies() }
     }
 
     fn run_command(&mut self, command: &Command) -> Vec<CommandReply> {
         let before = self.state.clone();
         let marks = (self.undo.len() + self.forgotten, self.journal.len());
+        let unchecked = self.unchecked.clone();
         let outer = std::mem::take(&mut self.out);
-        let value = self.is_value(&command.tokens[0]);
+        let value = self.is_value(command);
         let found = if value { Ok(("ACCEPT", None)) } else { verbs::find(&command.tokens[0].text) };
         let verb = found.as_ref().map_or("", |f| f.0);
         let result = found.and_then(|(verb, note)| {
@@ -401,6 +435,7 @@ impl SketchSession {
                 // Changes by a file before its refused command are undone too.
                 self.state = before;
                 self.recorded = None;
+                self.unchecked = unchecked;
                 self.undo.truncate(marks.0.saturating_sub(self.forgotten));
                 self.journal.truncate(marks.1);
                 replies.push(fault.into());

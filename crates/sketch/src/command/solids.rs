@@ -135,12 +135,20 @@ impl SketchSession {
         self.take_fit(&ids, &fitted.fits[0])?;
         if object.drawing.section.is_none() {
             let fit = &fitted.fits[0];
+            // Curves round corners of the wireframe.
+            let made = self.active_arc()?;
+            let curved = Some(self.worked(&made)).filter(|_| !made.curves.is_empty());
+            let volume = match curved.as_ref().map(|worked| worked.solid()) {
+                None => format!(", volume {}", plain(fit.volume)),
+                Some(solid) => {
+                    solid.map_or(String::new(), |s| format!(", volume {}", plain(s.mass().volume)))
+                }
+            };
             let text = format!(
-                "{} candidates, {} cells, {} faces, volume {}",
+                "{} candidates, {} cells, {} faces{volume}",
                 fitted.candidates,
                 fitted.cells,
                 fit.faces.len(),
-                plain(fit.volume)
             );
             self.out.push(CommandReply::note(text));
             let pairs = |list: &[[usize; 2]]| {

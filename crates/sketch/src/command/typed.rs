@@ -166,8 +166,8 @@ pub struct ObjectChange {
     pub body: bool,
 }
 
-/// The answer to a typed command.
-#[derive(Clone, Debug, PartialEq)]
+/// The answer to a typed command, or to a series of them.
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct CommandReport {
     /// Replies.
     pub replies: Vec<CommandReply>,
@@ -209,14 +209,21 @@ impl SketchSession {
                 if self.question.is_some() { "a question is open" } else { "a drag is open" };
             return Err(CommandError::text(text, "answer it, or end it first"));
         }
-        self.transaction =
-            Some(Transaction { before: self.state.clone(), journal: self.journal.len() });
+        self.transaction = Some(Transaction {
+            before: self.state.clone(),
+            journal: self.journal.len(),
+            unchecked: self.unchecked.clone(),
+        });
         Ok(())
     }
 
-    /// Ends a series of edits, and returns the changes of all of them.
-    pub fn commit(&mut self) -> Vec<ObjectChange> {
-        let Some(Transaction { before, journal }) = self.transaction.take() else { return vec![] };
+    /// Ends a series of edits, and returns the changes of all of them, with warnings of features that lost their
+    /// bodies by it.
+    pub fn commit(&mut self) -> CommandReport {
+        let mut report = CommandReport::default();
+        let Some(Transaction { before, journal, .. }) = self.transaction.take() else {
+            return report;
+        };
         let own = self.journal.split_off(journal);
         // Only the last of several moves of a point counts.
         let mut kept: Vec<String> = Vec::new();
@@ -230,19 +237,22 @@ impl SketchSession {
                 kept.push(line.clone());
             }
         }
-        if super::session::same(&before, &self.state) {
-            return vec![];
+        if !super::session::same(&before, &self.state) {
+            self.journal.push(kept.join("; "));
+            report.changes = self.changes_since(&before);
+            self.push_undo(before);
         }
-        self.journal.push(kept.join("; "));
-        let changes = self.changes_since(&before);
-        self.push_undo(before);
-        changes
+        if self.running == 0 {
+            report.replies = self.check_bodies();
+        }
+        report
     }
 
     /// Ends a series of edits and reverts it.
     pub fn rollback(&mut self) {
-        if let Some(Transaction { before, journal }) = self.transaction.take() {
+        if let Some(Transaction { before, journal, unchecked }) = self.transaction.take() {
             self.state = before;
+            self.unchecked = unchecked;
             self.journal.truncate(journal);
             self.question = None;
         }

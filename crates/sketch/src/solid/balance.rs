@@ -5,6 +5,7 @@
 
 use super::SketchSolid;
 use super::combine::CombineError;
+use super::mass::MassIntegrals;
 use moldloft_num::{Real, Vec3};
 
 /// Tolerance of the sums over a closed surface, relative to the area and to the area times the
@@ -18,13 +19,24 @@ impl<T: Real> SketchSolid<T> {
     /// The face that closes worst.
     pub(super) fn balanced(self) -> Result<SketchSolid<T>, CombineError> {
         let round = self.faces.iter().any(|f| f.ruled || f.trim.is_some());
-        if self.flat || !round || T::PARTS > 1 {
-            return Ok(self);
+        if round && !self.flat && T::PARTS == 1 {
+            self.closes(&self.integrals())?;
+        }
+        Ok(self)
+    }
+
+    /// Compares the integrals of the body with those of a closed surface, unless it is flat or has derivatives.
+    ///
+    /// # Errors
+    /// The face that closes worst.
+    pub(super) fn closes(&self, integrals: &MassIntegrals<T>) -> Result<(), CombineError> {
+        if self.flat || T::PARTS > 1 {
+            return Ok(());
         }
         let middle = self.middle();
         let extent = self.vertices.iter().map(|v| v.at.re().distance(middle)).fold(0.0, f64::max);
-        let gap = self.integrals().gap(extent);
-        if gap <= CLOSED { Ok(self) } else { Err(CombineError::Unbalanced(self.worst_face())) }
+        let closed = integrals.gap(extent) <= CLOSED;
+        if closed { Ok(()) } else { Err(CombineError::Unbalanced(self.worst_face())) }
     }
 
     /// A vertex of the trimmed face whose border, in its own parameters, is farthest from closed.

@@ -196,7 +196,7 @@ fn arranged<T: Real>(
         return Err(CombineError::Empty);
     }
     let body = Placing::new(&all, &arranged, scale, fitted).finish(bodies[0].flat)?;
-    let mut body = body.balanced()?;
+    let mut body = if body.facets.is_some() { body } else { body.balanced()? };
     if T::PARTS > 1 {
         body.kinks.append(&mut all.kinks);
         let rushing = coincidence::rushing(&body, &all.points);
@@ -767,7 +767,7 @@ impl<'a, T: Real> Placing<'a, T> {
     }
 
     /// Exact faces and facets must tell of one body: that they differ by more than chords do means that
-    /// an edge was followed to a wrong place.
+    /// an edge was followed to a wrong place. The faces must close.
     fn agrees(&self, solid: &SketchSolid<T>) -> Result<(), CombineError> {
         let Some(facets) = &solid.facets else { return Ok(()) };
         let origin = facets.points.first().map_or(Vec3::zero(), |p| p.re());
@@ -777,7 +777,8 @@ impl<'a, T: Real> Placing<'a, T> {
             volume += a.dot(b.cross(c)) / 6.0;
             area += (b - a).cross(c - a).norm() / 2.0;
         }
-        let mass = solid.mass();
+        let integrals = solid.integrals();
+        let mass = integrals.clone().finish(solid.flat);
         let far = facets.points.iter().map(|p| p.re().distance(origin)).fold(0.0, f64::max);
         let off = (mass.volume.re() - volume).abs() > 2e-3 * area * far
             || (mass.area.re() - area).abs() > 0.02 * area;
@@ -786,7 +787,7 @@ impl<'a, T: Real> Placing<'a, T> {
             let place = place.map_or(origin, |h| solid.vertices[solid.edges[h.0].ends[0]].at.re());
             return Err(CombineError::Touching(place));
         }
-        Ok(())
+        solid.closes(&integrals)
     }
 
     /// The mesh: parts of faces with their points where the exact edges run.

@@ -13,6 +13,7 @@ use super::operation::Operation;
 use super::outline::FacetDensity;
 use super::outline_offset::offset_outline;
 use super::outline_sides::outline_sides;
+use super::pierced::{lie_apart, side_by_side};
 use super::place::Similarity;
 use super::sweep_path::{SweepPath, border_path, drawn_path};
 use super::swept::{extruded, swept};
@@ -277,7 +278,8 @@ pub(super) fn body_at<T: Real>(
             valid(body).map_err(NoBody::Flaw)?
         }
     };
-    made.balanced().map_err(NoBody::Combine)
+    // What was combined is balanced already.
+    if made.facets.is_some() { Ok(made) } else { made.balanced().map_err(NoBody::Combine) }
 }
 
 impl Feature {
@@ -738,6 +740,9 @@ pub(super) fn repeated<T: Real>(
         copy.prefix_names(&format!("COPY{}.", k + 1));
         copies.push(copy);
     }
+    if copies.len() > 1 && lie_apart(&copies) {
+        return Ok(side_by_side(copies));
+    }
     let all: Vec<&SketchSolid<T>> = copies.iter().collect();
     united(&all).map_err(NoBody::Combine)
 }
@@ -832,7 +837,7 @@ impl<T: Real> SketchSolid<T> {
     }
 
     /// Adds a prefix to all names of faces.
-    fn prefix_names(&mut self, prefix: &str) {
+    pub(super) fn prefix_names(&mut self, prefix: &str) {
         if !prefix.is_empty() {
             for name in self.faces.iter_mut().flat_map(|f| &mut f.names) {
                 *name = format!("{prefix}{name}").into();

@@ -6,11 +6,12 @@ use super::edges::{FaceForm, TreatmentFault};
 use super::feature::{NoBody, copies, number, repeated};
 use super::operation::Operation;
 use super::outline::FacetDensity;
+use super::pierced::pierced;
 use super::place::Similarity;
 use super::validity::valid;
 use super::{SketchSolid, SolidEdge, SolidFace, Vertex};
 use crate::feature::{FaceChoice, Hole, HoleHead};
-use crate::{DimensionExpr, DimensionLayout, PointId};
+use crate::{CoordinateAxis, DimensionExpr, DimensionLayout, PointId};
 use moldloft_num::{Box3, Real, Vec3};
 use std::sync::Arc;
 
@@ -18,10 +19,32 @@ use std::sync::Arc;
 const NOTHING_REMOVED: f64 = 1e-12;
 
 /// A ring of the drill's profile: radius, coordinate along the axis, and the name of the face above it.
-struct DrillRing<T> {
-    radius: T,
-    level: T,
-    above: &'static str,
+#[derive(Clone)]
+pub(super) struct DrillRing<T> {
+    pub radius: T,
+    pub level: T,
+    pub above: &'static str,
+}
+
+/// A drill in its first position, by its rings from the lowest to the highest.
+pub(super) struct DrillProfile<T> {
+    pub axis: CoordinateAxis,
+    pub centre: Vec3<T>,
+    pub rings: Vec<DrillRing<T>>,
+}
+
+impl<T: Real> DrillProfile<T> {
+    /// The levels of its ends.
+    pub fn span(&self) -> [f64; 2] {
+        let levels = || self.rings.iter().map(|r| r.level.re());
+        [levels().fold(f64::INFINITY, f64::min), levels().fold(f64::NEG_INFINITY, f64::max)]
+    }
+
+    fn solid(&self, density: FacetDensity) -> Result<SketchSolid<T>, NoBody> {
+        let mut drill = rotational(self.axis.index(), self.centre, &self.rings);
+        drill.density = density;
+        valid(drill).map_err(NoBody::Flaw)
+    }
 }
 
 impl Hole {
@@ -50,6 +73,14 @@ impl Hole {
         layout: &DimensionLayout<T>,
         density: FacetDensity,
     ) -> Result<SketchSolid<T>, NoBody> {
+        self.profile(body, layout)?.solid(density)
+    }
+
+    fn profile<T: Real>(
+        &self,
+        body: &SketchSolid<T>,
+        layout: &DimensionLayout<T>,
+    ) -> Result<DrillProfile<T>, NoBody> {
         let size = |e: &DimensionExpr, what: &str| -> Result<T, NoBody> {
             let x = number(layout, e)?;
             match x.re() > 0.0 && x.re().is_finite() {
@@ -124,9 +155,7 @@ impl Hole {
         let mut centre = [T::zero(); 3];
         let [a, b] = self.axis.others();
         (centre[a.index()], centre[b.index()]) = (x?, y?);
-        let mut drill = rotational(k, Vec3::from(centre), &rings);
-        drill.density = density;
-        valid(drill).map_err(NoBody::Flaw)
+        Ok(DrillProfile { axis: self.axis, centre: Vec3::from(centre), rings })
     }
 
     fn widens<T: Real>(&self, radius: T, wide: T) -> Result<(), NoBody> {
@@ -143,8 +172,12 @@ impl Hole {
         layout: &DimensionLayout<T>,
         density: FacetDensity,
     ) -> Result<SketchSolid<T>, NoBody> {
-        let drill = self.drill(body, layout, density)?;
-        let drills = repeated(&drill, &self.images(layout)?)?;
+        let (drill, images) = (self.profile(body, layout)?, self.images(layout)?);
+        if let Some(mut made) = pierced(body, &drill, &images) {
+            made.density = density;
+            return valid(made).map_err(NoBody::Flaw);
+        }
+        let drills = repeated(&drill.solid(density)?, &images)?;
         let made = combined([body, &drills], Operation::Cut).map_err(NoBody::Combine)?;
         let [before, after] = [body, &made].map(|solid| solid.mass().volume.re());
         if before - after <= NOTHING_REMOVED * before {
@@ -160,7 +193,11 @@ fn fault(text: impl Into<String>, next: &'static str) -> NoBody {
 
 /// The body of revolution of rings from the lowest to the highest, about the axis `k` through a point: plane caps,
 /// quarters of cylinders and cones, and plane rings.
-fn rotational<T: Real>(k: usize, centre: Vec3<T>, rings: &[DrillRing<T>]) -> SketchSolid<T> {
+pub(super) fn rotational<T: Real>(
+    k: usize,
+    centre: Vec3<T>,
+    rings: &[DrillRing<T>],
+) -> SketchSolid<T> {
     const QUARTERS: [[f64; 2]; 4] = [[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0]];
     let mut out = SketchSolid::<T>::default();
     let middle = |ring: &DrillRing<T>| {

@@ -40,6 +40,7 @@ mod outline;
 mod outline_offset;
 mod outline_pieces;
 mod outline_sides;
+mod pierced;
 pub mod place;
 mod revolved;
 pub(crate) mod ruled_faces;

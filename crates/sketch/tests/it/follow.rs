@@ -314,3 +314,52 @@ fn a_boss_moves_with_the_face_that_it_is_on() {
     assert!(refused(&mut s, "MOVE LID ON TILTED TOP Z INTO T").contains("no face TOP Z"));
     assert!(refused(&mut s, "MOVE LID ON LID TOP Z").contains("on itself"));
 }
+
+/// Several changes are checked as one: after a line, a run of lines or a drag, in its last state.
+#[test]
+fn followers_are_checked_after_the_last_change() {
+    let lost = |replies: &[moldloft_sketch::CommandReply]| {
+        replies.iter().filter(|r| r.text.contains("beside the body")).count()
+    };
+    let mut s = SketchSession::new();
+    run(
+        &mut s,
+        "SKETCH S 2D XY; RECTANGLE 30 20; EXTRUDE S 5 INTO T; HOLE T 4 AT 25 10 INTO P; HOLE P 2 AT 5 5 INTO Q",
+    );
+    let before = volume(&mut s, "Q");
+    // A state between two lines of a run, and between two commands of a line, is not looked at.
+    assert_eq!(lost(&s.run_text("SET S.WIDTH1 20\nSET S.WIDTH1 30")), 0);
+    assert_eq!(lost(&s.run_line("SET S.WIDTH1 20; SET S.WIDTH1 30")), 0);
+    near(volume(&mut s, "Q"), before);
+    // Both bodies are gone in the end.
+    assert_eq!(lost(&s.run_line("SET S.WIDTH1 20; SET S.HEIGHT1 21")), 2);
+    run(&mut s, "UNDO 2");
+    near(volume(&mut s, "Q"), before);
+    s.begin().unwrap();
+    assert_eq!(lost(&s.run_line("SET S.WIDTH1 20")), 0);
+    assert_eq!(lost(&s.run_line("SET T.EXTRUDE1 6")), 0);
+    assert_eq!(lost(&s.commit().replies), 2);
+    run(&mut s, "UNDO");
+    s.begin().unwrap();
+    s.run_line("SET S.WIDTH1 20");
+    s.rollback();
+    assert_eq!(lost(&s.run_line("SET S.HEIGHT1 22")), 0);
+}
+
+#[test]
+fn a_name_answers_a_question() {
+    let mut s = SketchSession::new();
+    run(&mut s, "SKETCH G; VARIABLE L 7; SKETCH A 2D XY; RECTANGLE 9 8; VARIABLE W 5");
+    run(&mut s, "POINT 5 30 30; POINT 6 60 30; POINT 7 60 60; LINE 5 6; LINE 6 7");
+    for (answer, value) in [("W", 5.0), ("G.L", 7.0), ("\"W+G.L\"", 12.0), ("4.5", 4.5)] {
+        run(&mut s, "DIM Q X 5 6");
+        assert!(s.asks(), "{answer}");
+        run(&mut s, answer);
+        let q = s.numbers("A").unwrap().into_iter().find(|n| n.0 == "Q").unwrap();
+        assert_eq!(q.1, Some(value), "{answer}");
+        run(&mut s, "DELETE DIMENSION Q");
+    }
+    // A verb stays a verb.
+    run(&mut s, "VARIABLE CHECK 3; DIM Q X 5 6; CHECK");
+    assert!(s.asks());
+}

@@ -168,3 +168,62 @@ fn small_features_of_large_parts_are_written() {
         }
     }
 }
+
+/// The volume of a body, which may touch itself.
+fn measured(s: &mut SketchSession, name: &str) -> f64 {
+    s.objects().into_iter().find(|o| o.name == name).and_then(|o| o.volume).unwrap()
+}
+
+/// Holes in a step, also across its edges, from above and below.
+#[test]
+fn holes_are_cuts_by_cylinders() {
+    let mut random = Random::new(41);
+    for round in 0..rounds(20, 1_000) {
+        let mut whole = |low: usize, high: usize| (low + random.below(high - low + 1)) as f64;
+        let (w, h, depth) = (whole(30, 60), whole(10, 30), whole(20, 40));
+        let (step, low) = (whole(8, 20), whole(3, 8));
+        let body = format!(
+            "SKETCH A 2D XZ; POINT 1 0 0; POINT 2 60 0; POINT 3 60 9; POINT 4 20 9; POINT 5 20 30; POINT 6 0 30\n\
+             POLYLINE 1 2 3 4 5 6 CLOSE; DIM X 1 2 {w}; DIM X 1 4 {step}; DIM Z 2 3 {low}; DIM Z 1 6 {h}\n\
+             EXTRUDE A {depth}\n"
+        );
+        let (d, x, y) = (whole(2, 9), whole(0, 60), whole(0, 40));
+        let (dx, dy) = (whole(0, 15), whole(0, 15));
+        let top = whole(0, 1) > 0.0;
+        let deep = if whole(0, 1) > 0.0 { Some(whole(1, 30)) } else { None };
+        let text = deep.map_or(String::new(), |t| format!("DEPTH {t} "));
+        let side = if top { "TOP" } else { "BOTTOM" };
+        let long = deep.unwrap_or(h + 2.0);
+        let z = match (top, deep) {
+            (true, Some(t)) => h - t,
+            (false, Some(_)) => 0.0,
+            _ => -1.0,
+        };
+        let mut cut = SketchSession::new();
+        run(&mut cut, &body);
+        for (k, name) in ["P", "Q"].iter().enumerate() {
+            let (x, y) = (x + k as f64 * dx, y + k as f64 * dy);
+            let from = ["A", "P"][k];
+            let tool = format!(
+                "SKETCH C{k} 2D XY; CIRCLE DIAMETER {d} AT {x} {y}; EXTRUDE C{k} {long}\n\
+                 MOVE C{k} 0 0 {z}; CUT {from} C{k} INTO {name}"
+            );
+            run(&mut cut, &tool);
+        }
+        let expected = measured(&mut cut, "Q");
+        let mut s = SketchSession::new();
+        run(&mut s, &body);
+        let whole = measured(&mut s, "A");
+        let hole = format!("HOLE A {d} AT {x} {y} FROM {side} Z {text}LINEAR 2 {dx} {dy} INTO B");
+        if (whole - expected).abs() < 1e-9 * whole {
+            assert!(refused(&mut s, &hole).contains("beside the body"), "{round}: {body}{hole}");
+            continue;
+        }
+        run(&mut s, &hole);
+        let found = measured(&mut s, "B");
+        assert!(
+            (found - expected).abs() < 1e-10 * whole,
+            "{round}: {found} {expected}\n{body}{hole}"
+        );
+    }
+}

@@ -75,7 +75,7 @@ fn a_drag_is_one_step() {
         assert_eq!(s.journal().len(), before);
     }
     assert!(s.run_line("UNDO")[0].is_error());
-    let changes = s.commit();
+    let changes = s.commit().changes;
     assert_eq!((changes.len(), &changes[0].drawn[..]), (1, &[PointId(7)][..]));
     assert_eq!(&s.journal()[before..], ["POINT 7 AT 699 349.5"]);
     assert!(s.history().len() > undone);
@@ -95,13 +95,13 @@ fn a_drag_is_one_step() {
     s.run_line("POINT 1 5 5; POINT 2 6 6");
     s.rollback();
     assert_eq!((s.object("A").unwrap(), s.journal().len()), (&moved, settled));
-    assert!(s.commit().is_empty());
+    assert!(s.commit().changes.is_empty());
     // A move and back is no step.
     s.begin().unwrap();
     let p = moved.drawing.points[&PointId(7)];
     s.run_line("POINT 7 0 0");
     s.run_line(&format!("POINT 7 {} {}", p.u, p.v));
-    assert!(s.commit().is_empty() && s.journal().len() == settled);
+    assert!(s.commit().changes.is_empty() && s.journal().len() == settled);
 }
 
 #[test]
