@@ -77,7 +77,7 @@ impl fmt::Display for NotUnited {
 
 /// A triangle, and the face of the mesh that it is a part of.
 #[derive(Clone, Copy)]
-struct Part {
+struct FaceTriangle {
     corners: [u32; 3],
     face: usize,
 }
@@ -103,11 +103,11 @@ struct Vertices {
 }
 
 impl Vertices {
-    fn corners(&self, part: &Part) -> [Vec3; 3] {
+    fn corners(&self, part: &FaceTriangle) -> [Vec3; 3] {
         part.corners.map(|v| self.moved[v as usize])
     }
 
-    fn bounds(&self, part: &Part) -> Box3 {
+    fn bounds(&self, part: &FaceTriangle) -> Box3 {
         Box3::around(self.corners(part))
     }
 
@@ -152,13 +152,13 @@ impl Vertices {
     }
 
     /// How often a skin winds about a point.
-    fn winding(&self, skin: &[Part], p: Vec3) -> f64 {
-        let angle = |part: &Part| solid_angle(self.corners(part).map(|q| q - p));
+    fn winding(&self, skin: &[FaceTriangle], p: Vec3) -> f64 {
+        let angle = |part: &FaceTriangle| solid_angle(self.corners(part).map(|q| q - p));
         skin.iter().map(angle).sum::<f64>() / (4.0 * PI)
     }
 
-    fn six_volumes(&self, skin: &[Part]) -> f64 {
-        let volume = |part: &Part| {
+    fn six_volumes(&self, skin: &[FaceTriangle]) -> f64 {
+        let volume = |part: &FaceTriangle| {
             let [a, b, c] = self.corners(part);
             a.dot(b.cross(c))
         };
@@ -195,7 +195,7 @@ pub fn united(mesh: &Mesh<f64>) -> Result<UnitedSkin, NotUnited> {
 }
 
 /// The bodies of the skin, each with its cavities, moved by their own vectors.
-fn bodies(mesh: &Mesh<f64>, vertices: &mut Vertices) -> Result<Vec<Vec<Part>>, NotUnited> {
+fn bodies(mesh: &Mesh<f64>, vertices: &mut Vertices) -> Result<Vec<Vec<FaceTriangle>>, NotUnited> {
     let skin = mesh.skin_faces();
     let mut one = UnionFind::new(mesh.positions().len());
     for &face in &skin {
@@ -203,7 +203,7 @@ fn bodies(mesh: &Mesh<f64>, vertices: &mut Vertices) -> Result<Vec<Vec<Part>>, N
         rest.iter().for_each(|&v| one.join(a, v));
     }
     let mut numbers: HashMap<u32, usize> = HashMap::new();
-    let mut pieces: Vec<Vec<Part>> = Vec::new();
+    let mut pieces: Vec<Vec<FaceTriangle>> = Vec::new();
     for &face in &skin {
         let [a, b, c, d] = mesh.faces()[face];
         let k = *numbers.entry(one.find(a)).or_insert_with(|| {
@@ -212,10 +212,10 @@ fn bodies(mesh: &Mesh<f64>, vertices: &mut Vertices) -> Result<Vec<Vec<Part>>, N
         });
         let halves = [[a, b, c], [a, c, d]].into_iter();
         let whole = halves.filter(|[a, b, c]| a != b && b != c && c != a);
-        pieces[k].extend(whole.map(|corners| Part { corners, face }));
+        pieces[k].extend(whole.map(|corners| FaceTriangle { corners, face }));
     }
     let volumes: Vec<f64> = pieces.iter().map(|piece| vertices.six_volumes(piece)).collect();
-    let mut members: Vec<(usize, Vec<Part>)> = Vec::new();
+    let mut members: Vec<(usize, Vec<FaceTriangle>)> = Vec::new();
     let (solid, hollow): (Vec<usize>, Vec<usize>) =
         (0..pieces.len()).partition(|&k| volumes[k] > 0.0);
     members.extend(solid.into_iter().map(|k| (k, pieces[k].clone())));
@@ -242,7 +242,7 @@ fn bodies(mesh: &Mesh<f64>, vertices: &mut Vertices) -> Result<Vec<Vec<Part>>, N
 }
 
 /// For each vertex of a body the vector that moves all planes at it outward by one, or nearly so.
-fn outward(vertices: &Vertices, body: &[Part]) -> Vec<(u32, Vec3)> {
+fn outward(vertices: &Vertices, body: &[FaceTriangle]) -> Vec<(u32, Vec3)> {
     let mut around: BTreeMap<u32, Vec<Vec3>> = BTreeMap::new();
     for part in body {
         let [a, b, c] = vertices.corners(part);
@@ -280,9 +280,9 @@ impl Cuts {
 /// The skin of the union of two bodies.
 fn joined(
     vertices: &mut Vertices,
-    first: Vec<Part>,
-    second: Vec<Part>,
-) -> Result<Vec<Part>, NotUnited> {
+    first: Vec<FaceTriangle>,
+    second: Vec<FaceTriangle>,
+) -> Result<Vec<FaceTriangle>, NotUnited> {
     let tree = BoxTree::new(second.iter().map(|part| vertices.bounds(part)).collect());
     let mut known: HashMap<(Edge, bool, usize), Option<u32>> = HashMap::new();
     let mut cuts = [Cuts::default(), Cuts::default()];
@@ -310,11 +310,12 @@ fn joined(
                     cuts[0].add(edges(own.corners), &own_hits);
                     cuts[1].add(edges(other.corners), &other_hits);
                     // The line has what is outside on its left where it begins at an edge that goes in.
-                    let goes_in = |hits: [Option<u32>; 3], of: &Part, through: &Part| {
-                        let n = hits.iter().position(Option::is_some)?;
-                        let into = vertices.behind(through.corners, of.corners[(n + 1) % 3]);
-                        Some((hits[n] == Some(a)) == into)
-                    };
+                    let goes_in =
+                        |hits: [Option<u32>; 3], of: &FaceTriangle, through: &FaceTriangle| {
+                            let n = hits.iter().position(Option::is_some)?;
+                            let into = vertices.behind(through.corners, of.corners[(n + 1) % 3]);
+                            Some((hits[n] == Some(a)) == into)
+                        };
                     let first_to_last = goes_in(own_hits, own, other)
                         .or_else(|| Some(!goes_in(other_hits, other, own)?))
                         .unwrap_or(true);
@@ -335,7 +336,11 @@ fn joined(
 }
 
 /// The triangles of a skin, those with cuts divided along these.
-fn divided(vertices: &Vertices, skin: &[Part], cuts: &Cuts) -> Result<Vec<Part>, NotUnited> {
+fn divided(
+    vertices: &Vertices,
+    skin: &[FaceTriangle],
+    cuts: &Cuts,
+) -> Result<Vec<FaceTriangle>, NotUnited> {
     let mut parts = Vec::with_capacity(skin.len());
     for (k, part) in skin.iter().enumerate() {
         let lines = cuts.lines.get(&k).map_or(&[][..], Vec::as_slice);
@@ -380,7 +385,9 @@ fn divided(vertices: &Vertices, skin: &[Part], cuts: &Cuts) -> Result<Vec<Part>,
             return Err(NotUnited::Touching(vertices.given[rim[0] as usize]));
         }
         let face = part.face;
-        parts.extend(made.into_iter().map(|t| Part { corners: t.map(|k| numbers[k]), face }));
+        parts.extend(
+            made.into_iter().map(|t| FaceTriangle { corners: t.map(|k| numbers[k]), face }),
+        );
     }
     Ok(parts)
 }
@@ -388,10 +395,10 @@ fn divided(vertices: &Vertices, skin: &[Part], cuts: &Cuts) -> Result<Vec<Part>,
 /// The parts of a skin outside another body: what the crossing line bounds is in or out as a whole.
 fn outside(
     vertices: &Vertices,
-    parts: Vec<Part>,
+    parts: Vec<FaceTriangle>,
     cuts: &Cuts,
-    other: &[Part],
-) -> Result<Vec<Part>, NotUnited> {
+    other: &[FaceTriangle],
+) -> Result<Vec<FaceTriangle>, NotUnited> {
     let lines: HashSet<[u32; 2]> = cuts.lines.values().flatten().copied().collect();
     let mut beside: HashMap<Edge, usize> = HashMap::new();
     let mut one = UnionFind::new(parts.len());
@@ -447,10 +454,10 @@ fn is_thin([a, b, c]: [Vec3; 3], width: f64) -> bool {
 /// The skin with the ends of edges shorter than so many shifts at crossing points as one vertex, if it stays closed.
 fn welded(
     vertices: &Vertices,
-    skin: Vec<Part>,
+    skin: Vec<FaceTriangle>,
     original: usize,
     shifts: f64,
-) -> Result<Vec<Part>, NotUnited> {
+) -> Result<Vec<FaceTriangle>, NotUnited> {
     if let Some(at) = open_at(&skin) {
         return Err(NotUnited::Touching(vertices.given[at as usize]));
     }
@@ -472,7 +479,7 @@ fn welded(
         }
     }
     let mut used: HashMap<[u32; 3], usize> = HashMap::new();
-    let mut parts: Vec<Option<Part>> = Vec::new();
+    let mut parts: Vec<Option<FaceTriangle>> = Vec::new();
     for part in &skin {
         let corners = part.corners.map(|v| find(&one, v));
         let [a, b, c] = corners;
@@ -488,14 +495,14 @@ fn welded(
             continue;
         }
         used.insert(ring, parts.len());
-        parts.push(Some(Part { corners, ..*part }));
+        parts.push(Some(FaceTriangle { corners, ..*part }));
     }
-    let made: Vec<Part> = parts.into_iter().flatten().collect();
+    let made: Vec<FaceTriangle> = parts.into_iter().flatten().collect();
     Ok(if open_at(&made).is_none() { made } else { skin })
 }
 
 /// A vertex at which a skin is open or more than two triangles meet at an edge.
-fn open_at(skin: &[Part]) -> Option<u32> {
+fn open_at(skin: &[FaceTriangle]) -> Option<u32> {
     let mut directed: HashSet<(u32, u32)> = HashSet::new();
     for part in skin {
         let [a, b, c] = part.corners;
@@ -509,8 +516,8 @@ fn open_at(skin: &[Part]) -> Option<u32> {
 }
 
 /// A point of a skin with another face of it closely in front: the wall between two bodies that nearly touch.
-fn crack(vertices: &Vertices, skin: &[Part]) -> Option<Vec3> {
-    let corners = |part: &Part| part.corners.map(|v| vertices.given[v as usize]);
+fn crack(vertices: &Vertices, skin: &[FaceTriangle]) -> Option<Vec3> {
+    let corners = |part: &FaceTriangle| part.corners.map(|v| vertices.given[v as usize]);
     let tree = BoxTree::new(skin.iter().map(|part| Box3::around(corners(part))).collect());
     let mut met = Vec::new();
     skin.iter().find_map(|part| {
@@ -532,12 +539,12 @@ fn crack(vertices: &Vertices, skin: &[Part]) -> Option<Vec3> {
 }
 
 /// The faces of the skin, whole quads as such, with the vertices that they use.
-fn faces(mesh: &Mesh<f64>, vertices: &Vertices, skin: &[Part]) -> UnitedSkin {
+fn faces(mesh: &Mesh<f64>, vertices: &Vertices, skin: &[FaceTriangle]) -> UnitedSkin {
     let mut numbers: HashMap<u32, u32> = HashMap::new();
     let mut out = UnitedSkin { positions: Vec::new(), faces: Vec::new() };
     let mut k = 0;
     while k < skin.len() {
-        let Part { corners: [a, b, c], face } = skin[k];
+        let FaceTriangle { corners: [a, b, c], face } = skin[k];
         let whole = mesh.faces()[face];
         let next = skin.get(k + 1).map(|part| part.corners);
         let quad = [a, b, c] == [whole[0], whole[1], whole[2]]

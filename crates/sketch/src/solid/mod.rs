@@ -16,6 +16,7 @@ pub(crate) mod coincidence;
 pub mod combine;
 mod corners;
 pub mod curve;
+mod drill;
 mod edge_trace;
 pub(crate) mod edges;
 pub mod faces;

@@ -2,8 +2,8 @@
 //! copies that are apart.
 
 use super::curve::SmoothPiece;
+use super::drill::{DrillProfile, DrillRing, rotational};
 use super::edges::FaceForm;
-use super::hole::{DrillProfile, DrillRing, rotational};
 use super::place::Similarity;
 use super::{SketchSolid, SolidFace};
 use crate::PointId;
