@@ -451,7 +451,8 @@ fn is_thin([a, b, c]: [Vec3; 3], width: f64) -> bool {
     (b - a).cross(c - a).norm() <= width * longest
 }
 
-/// The skin with the ends of edges shorter than so many shifts at crossing points as one vertex, if it stays closed.
+/// The skin with edges at crossing points that are shorter than `shifts` times the shift of bodies contracted, if it stays
+/// closed.
 fn welded(
     vertices: &Vertices,
     skin: Vec<FaceTriangle>,
