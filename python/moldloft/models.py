@@ -635,8 +635,8 @@ class Model(Differentiable, Floating, Writable, Adapted):
 
         Both sides of a symmetric model are one whole. Panels are cut along the intersections of the
         bodies, and those inside are left out; the others stay as they are. Figures are those of the
-        panels: a finer ``tolerance`` comes nearer to the surfaces. Crossing points are exact to
-        1e-7 of the model's size, which the bounds of figures do not include.
+        panels: a finer ``tolerance`` comes nearer to the surfaces. Crossing points are on the
+        planes of their panels to rounding.
 
         Parameters
         ----------

@@ -73,8 +73,8 @@ def test_unions_of_bodies_have_the_volume_of_manifold(seed: int) -> None:
     united = moldloft.loads("\n".join(texts)).united()
     mesh = united.mesh()
     assert mesh.closed and mesh.summary["oriented"] and mesh.summary["outward"]
-    assert mesh.volume == pytest.approx(wanted.volume(), rel=1e-7)
-    assert mesh.area == pytest.approx(wanted.surface_area(), rel=1e-6)
+    assert mesh.volume == pytest.approx(wanted.volume(), rel=1e-12)
+    assert mesh.area == pytest.approx(wanted.surface_area(), rel=1e-12)
     assert not united.inner_skins()
 
 
