@@ -329,6 +329,13 @@ fn turn_across(surface: &dyn Surface<f64>, w: [f64; 2], d: [f64; 2]) -> bool {
     differ((tangent(-ASIDE), tangent(ASIDE)))
 }
 
+/// True when the surface has a sharp edge at a point: the normals about it differ.
+pub(crate) fn is_creased(surface: &dyn Surface<f64>, w: [f64; 2]) -> bool {
+    let normals = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]]
+        .map(|[du, dv]| surface.jet(w[0] + du * ASIDE, w[1] + dv * ASIDE, Order::First).normal());
+    (0..4).any(|k| differ((normals[k], normals[(k + 1) % 4])))
+}
+
 /// True when the tangents across a line jump somewhere on it.
 fn turns_along(surface: &dyn Surface<f64>, path: &[[f64; 2]]) -> bool {
     let last = path.len() - 1;

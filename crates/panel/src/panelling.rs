@@ -14,6 +14,7 @@ use crate::draft::{Draft, SharedKnuckles, drafts, indices};
 use crate::edges::{EdgePlan, along_edge, net, parameters};
 use crate::identity::Identities;
 use crate::joined_patches::JoinedPatches;
+use crate::knuckles::is_creased;
 use crate::notes::PanelNote;
 use crate::patch_values::{PatchValues, evaluated_all, names};
 use crate::roots::RootTable;
@@ -395,7 +396,7 @@ impl Panelling {
     }
 }
 
-/// Leaves the nets with knuckles as rows that have no folds. Patches of which a knuckle is no row, each with a point of it.
+/// Leaves the nets with knuckles as rows that have no folds. Patches of which a sharp edge is no row, each with a point of it.
 fn settle_nets(
     graph: &Graph<f64>,
     structure: &mut PanelTopology,
@@ -422,7 +423,7 @@ fn settle_nets(
     let cut_off = meshed.filter_map(|(patch, draft)| {
         let line = unsound.contains(&patch).then(|| draft.knuckles.across.first()).flatten();
         let place = draft.knuckles.loose.or(line.map(|line| line.middle()))?;
-        Some((patch, place))
+        is_creased(&*draft.surface, place).then_some((patch, place))
     });
     cut_off.collect()
 }

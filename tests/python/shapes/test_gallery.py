@@ -443,3 +443,65 @@ def test_the_bulb_of_the_tug_grows_by_its_section(seed: int) -> None:
     assert m.hydrostatics().volume - ahead == pytest.approx(0.1 * section, rel=1e-4)
     # Parts of the hull and the bulb's skin, of which a longer bulb has more.
     assert sum(m.wetted_areas().values()) == pytest.approx(m.hydrostatics().wetted_area, rel=1e-6)
+
+
+def test_the_struts_of_a_swath_end_on_its_hulls() -> None:
+    """Solids of revolution, and struts from their skin to the water, by quadrature."""
+    m = model("swath_struts")
+    for thickness, radius in ((1.0, 1.5), (1.4, 1.2)):
+        m["thickness"], m["radius"] = thickness, radius
+        ends = 2 / 3 * math.pi * radius**2 * 5 + math.pi * radius**2 * 15
+        s = (np.arange(2000) + 0.5) / 2000
+        tail = math.pi * radius**2 * float(np.mean((1 - s**2) ** 2 * (12 - 8 * s)))
+        x, y = m["section"](np.linspace(0, 0.5, 40_001))[:, :2].T
+        half = np.abs(y - m["spacing"] / 2)
+        s = (np.sqrt(np.maximum(36 - 4 * (x - 20), 0)) - 6) / -4
+        r = np.where(
+            x < 5, np.sqrt(np.maximum(1 - ((x - 5) / 5) ** 2, 0)), 1 - np.maximum(s, 0) ** 2
+        )
+        r *= radius
+        inner = half * np.sqrt(r**2 - half**2) + r**2 * np.arcsin(half / r)
+        above = 2 * m["depth"] * half - inner
+        strut = abs(float(np.sum((above[1:] + above[:-1]) / 2 * np.diff(x))))
+        h = m.hydrostatics(by=["depth"])
+        assert h.volume == pytest.approx(2 * (ends + tail + strut), rel=1e-7)
+        # Deeper hulls have longer struts.
+        plan = h.waterplane_area
+        assert h.derivatives["volume"]["depth"] == pytest.approx(plan, rel=1e-6)
+        assert not m.junctions() and m.mesh().closed
+    assert not m.diagnostics
+
+
+def test_the_workboat_has_the_volume_of_its_bottom_and_skeg() -> None:
+    m = model("workboat")
+    for changed in ({}, {"beam": 4.2, "deadrise": 12}):
+        for name, value in changed.items():
+            m[name] = value
+        h = m.hydrostatics()
+        # The flux through the chine flat is inward: it faces the centre plane.
+        bare = below_water([m["bottom"], m["topside"], m["transom"]])[0]
+        bare -= below_water([m["chine_flat"]])[0]
+        # The half section of the skeg, from the sole to the bottom above it.
+        x, y, _ = m["plan"](np.linspace(0, 1, 4001)).T
+        xs, ys = np.meshgrid(*[(np.arange(400) + 0.5) / 400] * 2, indexing="ij")
+        ys = ys * np.interp(6.6 + 4 * xs, x, y)
+        u = np.linspace(0, 1, 2001)
+        keel, chine = m["keel"](u), m["chine"](u)
+        along = 6.6 + 4 * xs
+        # Rules of the bottom have the same parameter on keel and chine.
+        t = np.interp(along, keel[:, 0], u)
+        for _ in range(30):
+            k, c = (
+                np.stack([np.interp(t, u, q[:, i]) for i in range(3)], -1) for q in (keel, chine)
+            )
+            part = ys / c[..., 1]
+            t += (along - k[..., 0] - part * (c[..., 0] - k[..., 0])) / 11
+        bottom = k[..., 2] + part * (c[..., 2] - k[..., 2])
+        skeg = 2 * 4 * float(np.mean((bottom + m["skeg"]) * np.interp(along, x, y)))
+        assert h.volume == pytest.approx(bare + skeg, rel=1.5e-4)
+        assert not h.remarks and h.kb == pytest.approx(h.vcb + m["skeg"], rel=1e-9)
+        assert m.mesh().closure()["closed_with_lids_and_mirror"] and not m.junctions()
+    # Immersed below its skeg alone: the section of the foil with a closed tail.
+    low = m.hydrostatics(level=-0.7)
+    assert low.waterplane_area == pytest.approx(0.68088 * 4 * m["thickness"], rel=1e-5)
+    assert not m.diagnostics
