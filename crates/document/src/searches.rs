@@ -74,22 +74,35 @@ pub struct CommonPoints {
     pub tangent: Vec<bool>,
     /// True when all common points were found.
     pub complete: bool,
+    /// Parameters of the nearest points of two curves that do not meet, and their distance; `None` for other shapes and for
+    /// incomplete searches.
+    pub nearest: Option<([f64; 2], f64)>,
 }
 
 impl CommonPoints {
     fn of<const N: usize>(roots: &Roots<N>, ours: &[usize], theirs: &[usize]) -> Meeting {
+        Meeting::Points(Self::listed(roots, ours, theirs))
+    }
+
+    fn of_curves(roots: &Roots<2>) -> Meeting {
+        let nearest = roots.closest.filter(|_| roots.complete && roots.roots.is_empty());
+        Meeting::Points(Self { nearest, ..Self::listed(roots, &[0], &[1]) })
+    }
+
+    fn listed<const N: usize>(roots: &Roots<N>, ours: &[usize], theirs: &[usize]) -> Self {
         let part = |which: &[usize]| -> Vec<Vec<f64>> {
             let row = |r: &FoundRoot<N>| which.iter().map(|&k| r.at[k]).collect();
             roots.roots.iter().map(row).collect()
         };
-        Meeting::Points(Self {
+        Self {
             ours: part(ours),
             theirs: part(theirs),
             widths: [ours.len(), theirs.len()],
             xyz: roots.roots.iter().map(|r| r.xyz).collect(),
             tangent: roots.roots.iter().map(|r| r.tangent).collect(),
             complete: roots.complete,
-        })
+            nearest: None,
+        }
     }
 }
 
@@ -150,7 +163,7 @@ impl Searches {
                 CommonPoints::of(&all_on_level(&**curve, &level), &[0], &[])
             }
             (Value::Curve(curve), With::Curve(other)) => {
-                CommonPoints::of(&all_curve_curve(&**curve, &**other, 0.0), &[0], &[1])
+                CommonPoints::of_curves(&all_curve_curve(&**curve, &**other, 0.0))
             }
             (Value::Curve(curve), With::Surface(other, _)) => {
                 CommonPoints::of(&all_curve_surface(&**curve, &**other), &[0], &[1, 2])

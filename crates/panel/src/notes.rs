@@ -54,6 +54,8 @@ pub enum PanelNote {
         corner: [u8; 2],
         /// Edge 0..4 (v = 0, u = 1, v = 1, u = 0) and the parameter along it.
         edge: (u8, f64),
+        /// The edge of the first patch along that edge, and the parameters of its ends on the latter.
+        part: Option<(u8, [f64; 2])>,
         /// True when the edge has a vertex there.
         twin: bool,
         /// Position.
@@ -154,11 +156,10 @@ impl PanelNote {
     pub fn help(&self) -> String {
         let text = match self {
             PanelNote::Unjoined { patches: [a, b], edges: [k, l], whole: true, .. } => {
-                let edge = |k: u8| ["v0", "u1", "v1", "u0"][usize::from(k) % 4];
                 return format!(
                     "write `Join j({a}.{}, {b}.{});`, or build both on the same curve or points",
-                    edge(*k),
-                    edge(*l)
+                    edge_name(*k),
+                    edge_name(*l)
                 );
             }
             PanelNote::Unjoined { .. } => {
@@ -172,6 +173,22 @@ impl PanelNote {
             }
             PanelNote::Apart { .. } => {
                 "let both surfaces use the same curve, or a snake of one as the edge of the other"
+            }
+            PanelNote::Junction {
+                patches: [a, b],
+                part: Some((k, [from, to])),
+                edge: (l, _),
+                twin: false,
+                ..
+            } => {
+                let (own, other) = (edge_name(*k), edge_name(*l));
+                let name: String =
+                    a.chars().map(|c| if c.is_alphanumeric() { c } else { '_' }).collect();
+                let [from, to] = [from, to].map(|t| (t * 1e7).round() / 1e7);
+                return format!(
+                    "write `AbsBead {name}_a({b}.{other}, {from}); AbsBead {name}_b({b}.{other}, {to}); \
+                     SubCurve {name}_part({name}_a, {name}_b); Join {name}_join({a}.{own}, {name}_part);`"
+                );
             }
             PanelNote::Junction { twin: false, .. } => {
                 "`Join` the neighbours' edges with parts of that edge, between beads or rings on it: \
@@ -216,6 +233,11 @@ impl PanelNote {
             PanelNote::More(_) => None,
         }
     }
+}
+
+/// The member of a surface that is its edge 0..4.
+fn edge_name(edge: u8) -> &'static str {
+    ["v0", "u1", "v1", "u0"][usize::from(edge) % 4]
 }
 
 /// Tells of a chain of patches whose ends have different divisions.
@@ -273,7 +295,9 @@ impl std::fmt::Display for PanelNote {
                 "`{a}` and `{b}` share an edge but are {distance:.3e} apart at ({}, {}, {})",
                 at.x, at.y, at.z
             ),
-            PanelNote::Junction { patches: [a, b], corner: [u, v], edge: (k, t), twin, at } => {
+            PanelNote::Junction {
+                patches: [a, b], corner: [u, v], edge: (k, t), twin, at, ..
+            } => {
                 let edge = ["v = 0", "u = 1", "v = 1", "u = 0"][usize::from(*k) % 4];
                 let along = if k % 2 == 0 { 'u' } else { 'v' };
                 let how = if *twin { "meets" } else { "is in the middle of" };

@@ -289,10 +289,16 @@ impl Panelling {
                     }
                     let twin = side.ends.iter().any(|q| q.distance(p) <= SAME_PLACE * size);
                     let name = |k: usize| self.structure.patches[k].name.to_string();
+                    let own = known.surfaces[patch].as_ref();
+                    let part = own.and_then(|own| {
+                        let on_own = |[u, v]: [f64; 2]| own.jet(u, v, Order::Zero).p;
+                        part_along(&on_own, corner, &point, SAME_PLACE * size)
+                    });
                     remarks.push(PanelNote::Junction {
                         patches: [name(patch), name(side.patch)],
                         corner,
                         edge: (side.edge, t),
+                        part,
                         twin,
                         at: p,
                     });
@@ -351,6 +357,31 @@ impl Panelling {
 }
 
 /// (u, v) at the parameter of an edge.
+/// The edge of a patch that runs from a corner along another edge, and the parameters of its ends there.
+fn part_along(
+    own: &impl Fn([f64; 2]) -> Vec3,
+    [u, v]: [u8; 2],
+    other: &impl Fn(f64) -> Vec3,
+    near: f64,
+) -> Option<(u8, [f64; 2])> {
+    const SAMPLES: usize = 64;
+    let on_other = |p: Vec3| {
+        let intervals = (0..SAMPLES).map(|k| [k, k + 1].map(|k| k as f64 / SAMPLES as f64));
+        let found = intervals.map(|interval| nearest(other, interval, p));
+        found
+            .min_by(|a, b| a.1.total_cmp(&b.1))
+            .filter(|found| found.1 <= near)
+            .map(|found| found.0)
+    };
+    let edges = [(if v == 0 { 0 } else { 2 }, u), (if u == 0 { 3 } else { 1 }, v)];
+    edges.into_iter().find_map(|(edge, end)| {
+        let from = f64::from(end);
+        let at = |share: f64| own(on_edge(edge, from + (1.0 - 2.0 * from) * share));
+        on_other(at(0.5))?;
+        Some((edge, [on_other(at(0.0))?, on_other(at(1.0))?]))
+    })
+}
+
 fn on_edge(edge: u8, t: f64) -> [f64; 2] {
     match edge {
         0 => [t, 0.0],

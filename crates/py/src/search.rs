@@ -153,7 +153,7 @@ fn rows<'py>(
 
 /// Isolated common points.
 fn points_dict(py: Python<'_>, points: CommonPoints) -> PyResult<Bound<'_, PyDict>> {
-    let CommonPoints { ours, theirs, widths, xyz, tangent, complete } = points;
+    let CommonPoints { ours, theirs, widths, xyz, tangent, complete, nearest } = points;
     let dict = PyDict::new(py);
     dict.set_item("branches", PyList::empty(py))?;
     dict.set_item("points", points_array(py, &xyz))?;
@@ -161,6 +161,7 @@ fn points_dict(py: Python<'_>, points: CommonPoints) -> PyResult<Bound<'_, PyDic
     dict.set_item("other", rows(py, theirs.into_iter(), widths[1])?)?;
     dict.set_item("tangent", PyArray1::from_vec(py, tangent))?;
     dict.set_item("complete", complete)?;
+    dict.set_item("nearest", nearest)?;
     dict.set_item("smallest", 0.0)?;
     Ok(dict)
 }
@@ -213,6 +214,7 @@ fn branches_dict<'py>(
     dict.set_item("other", part(2, width)?)?;
     dict.set_item("tangent", PyArray1::from_vec(py, vec![true; xyz.len()]))?;
     dict.set_item("complete", found.complete)?;
+    dict.set_item("nearest", None::<([f64; 2], f64)>)?;
     dict.set_item("smallest", found.smallest)?;
     Ok(dict)
 }

@@ -90,6 +90,9 @@ class Intersection:
     """False if the search reached its limit, as for coincident shapes: there may be more."""
     smallest: float
     """Minimum length of the branches that are found, if not tangent everywhere."""
+    nearest: tuple[tuple[float, float], float] | None = None
+    """Parameters of the nearest points of two curves that do not meet, and their distance; None for
+    other shapes, or if the search is not complete."""
 
     def __bool__(self) -> bool:
         """True if there is a common point."""
@@ -172,6 +175,9 @@ def intersect(target: Object, other: object) -> Intersection:
         tangent=found["tangent"],
         complete=found["complete"],
         smallest=found["smallest"],
+        nearest=None
+        if found["nearest"] is None
+        else (tuple(found["nearest"][0]), found["nearest"][1]),
     )
 
 

@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
+import os
+
 import numpy as np
 import pytest
+from scipy.spatial import cKDTree
 
 import moldloft
 from moldloft import kinds as k
 from moldloft.builder import Builder
+
+SOAK = bool(os.environ.get("MOLDLOFT_SOAK"))
 
 TUBE = """
 AbsPoint O(0, 0, 0); AbsPoint X(1, 0, 0); Line axis(O, X); AbsPoint A(0, 2, 0); AbsPoint B(4, 2, 0);
@@ -160,3 +165,95 @@ def test_branches_of_a_random_surface_are_those_of_a_fine_net() -> None:
     apart = np.linalg.norm(points[:, None] - stations[None], axis=-1).min(axis=1)
     assert apart.max() < 0.2
     assert cut.complete
+
+
+def occt_curve(points: np.ndarray, degree: int) -> object:
+    """A clamped uniform B-spline in OCCT."""
+    from OCP.collections import Array1_double, Array1_gp_Pnt, Array1_int
+    from OCP.Geom import Geom_BSplineCurve
+    from OCP.gp import gp_Pnt
+
+    spans = len(points) - degree
+    poles = Array1_gp_Pnt(1, len(points))
+    knots, counts = Array1_double(1, spans + 1), Array1_int(1, spans + 1)
+    for n, p in enumerate(points.tolist(), 1):
+        poles.SetValue(n, gp_Pnt(*p))
+    for n in range(spans + 1):
+        knots.SetValue(n + 1, n / spans)
+        counts.SetValue(n + 1, degree + 1 if n in (0, spans) else 1)
+    return Geom_BSplineCurve(poles, knots, counts, degree)
+
+
+def nearest_by_occt(a: object, b: object) -> list[tuple[float, float, float]]:
+    """Distances of curves at their extrema, ends included, ascending, with parameters."""
+    from OCP.GeomAPI import GeomAPI_ExtremaCurveCurve, GeomAPI_ProjectPointOnCurve
+
+    found = GeomAPI_ExtremaCurveCurve(a, b)
+    all_ = []
+    for n in range(1, found.NbExtrema() + 1):
+        t, s = found.Parameters(n)
+        all_.append((found.Distance(n), t, s))
+    for end in (0.0, 1.0):
+        for first, second, turned in ((a, b, False), (b, a, True)):
+            p = first.Value(end)
+            feet = GeomAPI_ProjectPointOnCurve(p, second)
+            for n in range(1, feet.NbPoints() + 1):
+                foot = feet.Parameter(n)
+                pair = (foot, end) if turned else (end, foot)
+                all_.append((feet.Distance(n), *pair))
+            for other in (0.0, 1.0):
+                pair = (other, end) if turned else (end, other)
+                all_.append((p.Distance(second.Value(other)), *pair))
+    return sorted(all_)
+
+
+@pytest.mark.parametrize("seed", range(250 if SOAK else 2))
+def test_pairs_of_curves_meet_where_dense_polylines_cross(seed: int) -> None:
+    """Forty pairs each, plane and in space, beside sign changes and OCCT's extrema."""
+    pytest.importorskip("OCP")
+    rng = np.random.default_rng(seed)
+    for _ in range(40):
+        flat = rng.random() < 0.6
+        nets, degrees = [], []
+        for _ in range(2):
+            degrees.append(int(rng.integers(1, 4)))
+            net = rng.normal(size=(degrees[-1] + int(rng.integers(1, 5)), 3))
+            net[:, 2] *= not flat
+            nets.append(net)
+        with Builder() as builder:
+            for name, net, degree in zip("ab", nets, degrees, strict=True):
+                k.BCurve(name, net.tolist(), degree=degree)
+        m = builder.model()
+        found = m["a"].intersect(m["b"])
+        assert found.complete
+        a, b = (occt_curve(n, d) for n, d in zip(nets, degrees, strict=True))
+        best = nearest_by_occt(a, b)[0][0]
+        t = np.linspace(0, 1, 1201)
+        p, q = m["a"](t), m["b"](t)
+        if len(found.points):
+            on = [
+                m[n](w[:, 0]) for n, w in (("a", found.parameters), ("b", found.other_parameters))
+            ]
+            np.testing.assert_allclose(on[0], on[1], atol=1e-9)
+            assert found.nearest is None
+        else:
+            (at, other), distance = found.nearest
+            gap = np.linalg.norm(m["a"](at) - m["b"](other))
+            assert gap == pytest.approx(distance, rel=1e-9)
+            # OCCT's extrema may miss the least one.
+            least = cKDTree(p).query(q)[0].min()
+            assert distance <= min(best, least) * (1 + 1e-9)
+            assert distance == pytest.approx(least, abs=0.05) or distance < least
+        if flat:
+            assert len(found.points) == crossings(p[:, :2], q[:, :2])
+
+
+def crossings(p: np.ndarray, q: np.ndarray) -> int:
+    """The number of crossings of two polylines in the plane."""
+    d, e = np.diff(p, axis=0)[:, None], np.diff(q, axis=0)[None]
+    g = q[None, :-1] - p[:-1, None]
+    det = d[..., 0] * e[..., 1] - d[..., 1] * e[..., 0]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        t = (g[..., 0] * e[..., 1] - g[..., 1] * e[..., 0]) / det
+        s = (g[..., 0] * d[..., 1] - g[..., 1] * d[..., 0]) / det
+    return int(np.sum((t >= 0) & (t < 1) & (s >= 0) & (s < 1)))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 from pathlib import Path
 
 import numpy as np
@@ -116,3 +117,52 @@ AbsPoint C({apart}, 0, -{r}); AbsPoint D({apart}, 0, {r}); Line ay(C, D);
 Arc rim(C, {{{apart + r}, 0, 0}}, D, type = 1); RevSurf other(rim, ay, 0, 2*PI);
 """)
         assert bool(m.inner_skins()) == (gap < 0), (apart, r)
+
+
+GALLERY = Path(__file__).resolve().parents[3] / "examples" / "gallery"
+VESSELS = ("catamaran", "merchant", "planing", "rowing_shell", "semisubmersible", "tug", "workboat")
+
+
+def broken(rng: np.random.Generator) -> moldloft.Model | None:
+    """A vessel with one or two numbers of its text changed; None if it has no error."""
+    text = (GALLERY / f"{rng.choice(VESSELS)}.sdl").read_text(encoding="utf-8")
+    for _ in range(rng.integers(1, 3)):
+        body = text.index("Model info")
+        found = list(re.finditer(r"(?<![\w.\"])\d+(\.\d+)?(?![\w.])", text[body:]))
+        at = found[rng.integers(len(found))]
+        value = float(at[0]) * rng.choice([-1, 0, 0.1, 0.5, 2, 10])
+        text = f"{text[: body + at.start()]}{value:g}{text[body + at.end() :]}"
+    m = moldloft.loads(text, strict=False)
+    return m if m.has_errors else None
+
+
+@pytest.mark.parametrize("seed", range(1000 if SOAK else 8))
+def test_a_vessel_with_a_broken_object_has_no_figures(seed: int, tmp_path: Path) -> None:
+    rng = np.random.default_rng(seed)
+    m = None
+    while m is None:
+        m = broken(rng)
+    name = next(iter(m.params))
+    uses = {
+        "mesh": m.mesh,
+        "hydrostatics": m.hydrostatics,
+        "equilibrium": lambda: m.equilibrium(10.0, density="salt"),
+        "righting_curve": lambda: m.righting_curve([0.1], 10.0, cg=(0, 0, 0), density=1),
+        "panel_figures": m.panel_figures,
+        "wetted_areas": m.wetted_areas,
+        "eval": lambda: m.eval("hydrostatics.volume"),
+        "derivative": lambda: m.derivative("mesh.volume", name),
+        "jacobian": lambda: m.jacobian([name]),
+        "vjp": lambda: m.vjp({"mesh.volume": 1.0}),
+        "united": m.united,
+        "to_capytaine": m.to_capytaine,
+        "to_trimesh": m.to_trimesh,
+    }
+    formats = ("gdf", "stl", "step", "iges", "3dm", "obj", "svg", "dxf", "pnl", "hst", "msh")
+    for to in formats:
+        uses[to] = lambda to=to: m.write(tmp_path / f"f.{to}")
+    for use, call in uses.items():
+        with pytest.raises(moldloft.errors.Error) as raised:
+            call()
+        assert str(raised.value), use
+    assert not list(tmp_path.iterdir())

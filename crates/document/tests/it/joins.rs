@@ -398,6 +398,15 @@ fn corners_that_miss_their_neighbours_are_told() {
     assert!(id == "corner-not-joined" && said.contains(&first), "{said:?}");
     assert_eq!(said.len(), 2, "{said:?}");
     assert!(d.panelled().unwrap().mesh.report().open_loops.len() > 1);
+    // The lines of the remedy mend it.
+    let remedy: String = reported
+        .iter()
+        .map(|t| t.help.first().and_then(|help| help.split('`').nth(1)).unwrap_or_default())
+        .collect();
+    assert_eq!(remedy.matches("Join ").count(), 2, "{remedy}");
+    let mut d = sound(&(text("Line am(A, M); Line mb(M, B);") + &remedy));
+    assert_eq!(d.junctions().unwrap(), [], "{remedy}");
+    assert_eq!(d.panelled().unwrap().mesh.report().euler, 1, "a disc");
     let marked = "AbsBead m(ab, 0.35); AbsBead a(ab, 0); AbsBead b(ab, 1); SubCurve am(a, m); SubCurve mb(m, b);";
     let mut d = sound(&text(marked));
     assert_eq!(d.junctions().unwrap().len(), 0);
