@@ -40,16 +40,18 @@ pub(crate) fn proposed(help: &str) -> Option<&str> {
 }
 
 /// The candidate most similar to `name`: equal except for case, or within an edit distance of a
-/// third of its length (at least 1). The first of equally near ones; `None` for names longer than
-/// 100 characters.
+/// third of its length (at least 1); failing that, one that begins or ends with it and an underscore. The first of
+/// equally near ones; `None` for names longer than 100 characters.
 ///
 /// ```
 /// assert_eq!(moldloft_diag::nearest("AbsPiont", ["AbsPoint", "RelPoint"]), Some("AbsPoint"));
 /// assert_eq!(moldloft_diag::nearest("bcurve", ["CCurve", "BCurve"]), Some("BCurve"));
+/// assert_eq!(moldloft_diag::nearest("offset", ["set_offset"]), Some("set_offset"));
 /// assert_eq!(moldloft_diag::nearest("x", ["hull"]), None);
 /// ```
 pub fn nearest<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     const LONGEST: usize = 100;
+    const SHORTEST_PART: usize = 3;
     let length = name.chars().count();
     if length > LONGEST {
         return None;
@@ -57,10 +59,17 @@ pub fn nearest<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str>) ->
     let limit = (length / 3).max(1);
     let folded = name.to_lowercase();
     let mut best: Option<(usize, &str)> = None;
+    let mut longer: Option<&str> = None;
     for candidate in candidates {
         let other = candidate.chars().count();
         if other > LONGEST || candidate == name {
             continue;
+        }
+        let is_part = length >= SHORTEST_PART
+            && (candidate.strip_prefix(name).is_some_and(|rest| rest.starts_with('_'))
+                || candidate.strip_suffix(name).is_some_and(|rest| rest.ends_with('_')));
+        if is_part {
+            longer = longer.or(Some(candidate));
         }
         let distance = if candidate.to_lowercase() == folded {
             0
@@ -75,7 +84,7 @@ pub fn nearest<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str>) ->
             best = Some((distance, candidate));
         }
     }
-    best.map(|(_, candidate)| candidate)
+    best.map(|(_, candidate)| candidate).or(longer)
 }
 
 #[cfg(test)]
@@ -103,6 +112,9 @@ mod tests {
         assert_eq!(nearest("q", ["p"]), None);
         assert_eq!(nearest("stern", ["bow", "keel"]), None);
         assert_eq!(nearest("hull", []), None);
+        assert_eq!(nearest("shell", ["shells", "set_shell"]), Some("shells"));
+        assert_eq!(nearest("union", ["smooth_union", "set_union"]), Some("smooth_union"));
+        assert_eq!(nearest("un", ["un_on"]), None);
         assert_eq!(nearest("hull", ["hull", "hall"]), Some("hall"));
         assert_eq!(nearest(&"x".repeat(1000), ["x"]), None);
     }
