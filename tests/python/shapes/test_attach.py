@@ -373,3 +373,29 @@ def test_an_appendage_across_a_knuckle_between_two_surfaces() -> None:
         assert len(mesh.summary["open_loops"]) == 2 and not model.junctions()
         numbered = mesh.faces if numbered is None else numbered
         assert np.array_equal(mesh.faces, numbered)
+
+
+LENS = """
+load "attach.sdl"
+AbsPoint A(0, 0, 0); AbsPoint B(30, 0, 0); AbsPoint C(0, 0, -{r}); AbsPoint D(30, 0, -{r});
+Line axis(A, B); Line rule(C, D); RevSurf hull(rule, axis, 0, 2*PI, visible = 0);
+AbsPoint L({x}, 0, 0); AbsPoint T({x} + {c}, 0, 0); AbsPoint U({x} + {c}, 0, 6);
+AbsPoint I({x} + {c}/2, -{t}, 0); AbsPoint O({x} + {c}/2, {t}, 0);
+Arc port(T, I, L); Arc starboard(L, O, T); PolyCurve section({{port, starboard}});
+CopyCurve top(section, T, U); RuledSurf strut(section, top, visible = 0);
+attach weld(hull, strut, seam = strut.u0); SubSurf skin({{weld.rim, strut.v1}});
+"""
+
+
+@pytest.mark.parametrize("seed", range(200 if SOAK else 6))
+def test_an_appendage_may_have_sharp_edges(seed: int) -> None:
+    """A strut of two arcs: at the edge the rim has the tangent of one side or the other."""
+    rng = np.random.default_rng(seed)
+    r, c = rng.uniform(1, 3), rng.uniform(6, 16)
+    m = moldloft.loads(LENS.format(r=r, x=rng.uniform(4, 10), c=c, t=rng.uniform(0.2, 0.8) * r / 2))
+    for name in ("weld.rim", "weld.hole"):
+        # The edge is half-way round.
+        before, at, after = (m[name].derivative(0.5 + d) for d in (-1e-7, 0, 1e-7))
+        nearest = min(np.abs(at - side).max() for side in (before, after))
+        assert nearest < 1e-3 * np.abs(at).max(), (name, before, at, after)
+    assert not m.junctions()

@@ -85,11 +85,13 @@ pub(super) struct CutPiece<T> {
     pub places: [Unknowns; NODES],
     /// True if these are the unknowns to rounding, so that no iteration is needed.
     pub exact: bool,
+    /// The edges or joints of their surface between which each unknown is.
+    pub within: [[f64; 2]; 4],
     /// True where the intersection may bend at its beginning: at a joint or a seam of a surface.
     pub joint: bool,
 }
 
-/// Rounding of a parameter at an edge of a surface.
+/// Rounding of a parameter at an edge or a joint of a surface.
 const EDGE_ROUNDING: f64 = 1e-12;
 
 /// A cubic in powers of y.
@@ -143,13 +145,14 @@ impl<T: Real> CutPiece<T> {
         T::from(y) - (rest - rest.re()) / slope
     }
 
-    /// The unknowns with those that rounding has moved across an edge of their surface back on it:
-    /// beyond the edge there may be the other side of a sharp seam.
-    fn within_edges(&self, unknowns: [T; 4]) -> [T; 4] {
+    /// The unknowns with those that rounding has moved across an edge or a joint of their surface back on their side: beyond
+    /// it there may be the other side of a sharp seam or knuckle.
+    fn on_its_side(&self, unknowns: [T; 4]) -> [T; 4] {
         std::array::from_fn(|k| {
-            let (x, middle) = (unknowns[k], self.places[0][k]);
-            let beyond = x.re() - x.re().clamp(0.0, 1.0);
-            let crossed = (0.0..=1.0).contains(&middle) && beyond.abs() < EDGE_ROUNDING;
+            let x = unknowns[k];
+            let [low, high] = self.within[k];
+            let beyond = x.re() - x.re().clamp(low, high);
+            let crossed = beyond.abs() < EDGE_ROUNDING;
             if crossed { x - beyond } else { x }
         })
     }
@@ -274,6 +277,23 @@ impl<T: Real> Implicit<T, 4> for AcrossSurface<'_, T> {
 }
 
 impl<T: Real> Both<T> {
+    /// For each unknown the edges or joints of its surface on both sides of a place; at a joint above, the last number below.
+    pub fn bounds_at(&self, place: &Unknowns) -> [[f64; 2]; 4] {
+        let second = self.second.surface().map_or([Vec::new(), Vec::new()], |s| s.joints());
+        let [us, vs] = self.first.joints();
+        let [ps, rs] = second;
+        let mut joints = [us, vs, ps, rs].into_iter();
+        place.map(|x| {
+            let joints = joints.next().unwrap_or_default();
+            if !(0.0..=1.0).contains(&x) {
+                return [f64::NEG_INFINITY, f64::INFINITY];
+            }
+            let low = joints.iter().filter(|j| **j <= x).fold(0.0, |a: f64, j| a.max(*j));
+            let above = joints.into_iter().filter(|j| *j > x && *j < 1.0).reduce(f64::min);
+            [low, above.map_or(1.0, f64::next_down)]
+        })
+    }
+
     /// All unknowns at `y` of a piece, from the real ones `q`, with derivatives with respect to the
     /// model's parameters.
     pub fn unknowns(&self, guide: &Guide, q: Unknowns, y: T) -> Option<[T; 4]> {
@@ -391,7 +411,7 @@ impl<T: Real> Cut<T> {
         let pair = |q: [T; 4]| flat([q[2 * side], q[2 * side + 1]], T::one());
         let plain_jet = [pair(q.map(T::from)), Vec3::zero(), Vec3::zero()];
         let Some(all) = self.both.unknowns(&piece.guide, q, y) else { return plain_jet };
-        let all = piece.within_edges(all);
+        let all = piece.on_its_side(all);
         let w = pair(all);
         if order == Order::Zero {
             return [w, Vec3::zero(), Vec3::zero()];

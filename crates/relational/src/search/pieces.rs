@@ -245,12 +245,14 @@ pub(super) fn laid<T: Real>(
     if let Some(far) = beyond(1) {
         length += far;
     }
+    let places = powers(&matrix, &fit.at);
     Some(CutPiece {
         begin,
         length,
         guide: fit.guide,
         run,
-        places: powers(&matrix, &fit.at),
+        within: both.bounds_at(&places[0]),
+        places,
         joint: fit.seam || fit.ends[0].joint.is_some(),
         exact: fit.exact,
     })
