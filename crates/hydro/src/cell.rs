@@ -214,7 +214,11 @@ pub(crate) fn cells_of<T: Real>(
     limits: FitLimits,
 ) -> Option<Vec<PolynomialCell<T>>> {
     let division = SurfaceDivision::new(surface, loops)?;
-    let fit = &mut |frame: &CellFrame<'_, T>| fit(surface, frame, reversed);
+    let mut sampling = Sampling::new();
+    let fit = &mut |frame: &CellFrame<'_, T>| {
+        let samples = sampling.on(surface, frame, |x| x, || {});
+        samples.interpolated(frame.border(), reversed)
+    };
     let cells = division.cells(limits, fit)?;
     Some(cells.into_iter().map(|(_, cell)| cell).collect())
 }
@@ -225,6 +229,9 @@ pub(crate) struct SurfaceDivision<T> {
     us: Vec<T>,
     vs: Vec<T>,
     charts: Option<Vec<Chart<T>>>,
+    /// The number of pieces between joints that are at other v from u to u; 0 where there are none, or where
+    /// derivatives, which are less smooth at them, do not matter.
+    pieces: usize,
 }
 
 impl<T: Real> SurfaceDivision<T> {
@@ -243,19 +250,33 @@ impl<T: Real> SurfaceDivision<T> {
         let (us, vs) = (ends(bu, ju), ends(bv, jv));
         let (us, vs) = (moving(surface, 0, &us), moving(surface, 1, &vs));
         let charts = charts(surface, loops, [&us, &vs])?;
-        Some(Self { us, vs, charts })
+        let whole = charts.is_none() && vs.len() == 2 && us.iter().all(|u| u.is_constant());
+        let pieces = match T::PARTS > 1 && whole {
+            true => surface.between_joints(&[0.5], &[0.5]).map_or(0, |points| points.len()),
+            false => 0,
+        };
+        Some(Self { us, vs, charts, pieces })
     }
 
     fn frames(&self) -> Vec<CellFrame<'_, T>> {
         let whole = [0.0, 1.0, 0.0, 1.0].map(T::from);
         match &self.charts {
-            Some(charts) => {
-                charts.iter().map(|chart| CellFrame { chart: Some(chart), ends: whole }).collect()
+            Some(charts) => (charts.iter())
+                .map(|chart| CellFrame { chart: Some(chart), piece: None, ends: whole })
+                .collect(),
+            None if self.pieces > 0 => {
+                let of = self.pieces;
+                let row = move |u: [T; 2]| {
+                    let piece = move |at: usize| Some(Piece { at, of });
+                    let ends = [u[0], u[1], T::zero(), T::one()];
+                    (0..of).map(move |at| CellFrame { chart: None, piece: piece(at), ends })
+                };
+                self.us.windows(2).flat_map(|u| row([u[0], u[1]])).collect()
             }
             None => {
                 let row = |u: [T; 2]| {
                     let ends = self.vs.windows(2).map(move |v| [u[0], u[1], v[0], v[1]]);
-                    ends.map(|ends| CellFrame { chart: None, ends })
+                    ends.map(|ends| CellFrame { chart: None, piece: None, ends })
                 };
                 self.us.windows(2).flat_map(|u| row([u[0], u[1]])).collect()
             }
@@ -298,15 +319,66 @@ enum CellFits<'a, T, C> {
     NotFinite,
 }
 
-/// A rectangle in the parameters of a chart or of the surface.
+/// One of the pieces between joints across u.
+#[derive(Clone, Copy)]
+struct Piece {
+    at: usize,
+    of: usize,
+}
+
+/// A rectangle in the parameters of a chart, of a piece between joints, or of the surface.
 #[derive(Clone, Copy)]
 pub(crate) struct CellFrame<'a, T> {
     chart: Option<&'a Chart<T>>,
-    /// Minimum and maximum of u, minimum and maximum of v.
+    piece: Option<Piece>,
+    /// Minimum and maximum of u, minimum and maximum of v, which is relative to the width of a piece.
     ends: [T; 4],
 }
 
+/// Ends of frames of pieces, which share their samples.
+pub(crate) type PieceEnds = [u64; 4];
+
 impl<T: Real> CellFrame<'_, T> {
+    /// The ends of the frame of a piece.
+    pub fn piece_ends(&self) -> Option<PieceEnds> {
+        self.piece.map(|_| self.ends.map(|t| t.re().to_bits()))
+    }
+
+    /// The index of the piece.
+    pub fn piece(&self) -> usize {
+        self.piece.map_or(0, |piece| piece.at)
+    }
+
+    /// The points of the surface of which the cells between these ends are made, of each piece.
+    pub fn points_of_pieces(&self, surface: &dyn Surface<T>) -> Vec<Vec<Vec3<T>>> {
+        self.places_in_pieces(surface, &tables().nodes)
+    }
+
+    fn places_in_pieces(&self, surface: &dyn Surface<T>, shares: &[f64]) -> Vec<Vec<Vec3<T>>> {
+        let count = self.piece.map_or(0, |piece| piece.of);
+        let [us, vs] = self.parameters(shares);
+        let each = shares.len();
+        let all = surface.between_joints(&us, &vs).filter(|all| all.len() == count * each * each);
+        let of = |at: usize| match &all {
+            Some(all) => {
+                (0..each * each).map(|k| all[(k / each * count + at) * each + k % each]).collect()
+            }
+            None => vec![Vec3::of(f64::NAN, f64::NAN, f64::NAN); each * each],
+        };
+        (0..count).map(of).collect()
+    }
+
+    /// The parameters at these relative positions in the frame.
+    fn parameters(&self, shares: &[f64]) -> [Vec<f64>; 2] {
+        let [u0, u1, v0, v1] = self.ends.map(|t| t.re());
+        let within = |a: f64, b: f64, s: f64| match s {
+            0.0 => a,
+            1.0 => b,
+            s => a + (b - a) * s,
+        };
+        [(u0, u1), (v0, v1)].map(|(a, b)| shares.iter().map(|&s| within(a, b, s)).collect())
+    }
+
     /// The halves along u (0) or v (1).
     fn halves(&self, along: usize) -> [Self; 2] {
         let [u0, u1, v0, v1] = self.ends;
@@ -314,7 +386,7 @@ impl<T: Real> CellFrame<'_, T> {
             0 => [[u0, (u0 + u1) * 0.5, v0, v1], [(u0 + u1) * 0.5, u1, v0, v1]],
             _ => [[u0, u1, v0, (v0 + v1) * 0.5], [u0, u1, (v0 + v1) * 0.5, v1]],
         };
-        halves.map(|ends| CellFrame { chart: self.chart, ends })
+        halves.map(|ends| CellFrame { ends, ..*self })
     }
 
     /// The points of the surface of which a cell is made.
@@ -336,22 +408,17 @@ impl<T: Real> CellFrame<'_, T> {
     pub fn border(&self) -> [bool; 4] {
         let [u0, u1, v0, v1] = self.ends.map(|t| t.re());
         let ends = [v0 == 0.0, u1 == 1.0, v1 == 1.0, u0 == 0.0];
-        match self.chart {
-            Some(chart) => std::array::from_fn(|k| ends[k] && chart.border[k]),
-            None => ends,
+        let of_piece = |Piece { at, of }: Piece| [at == 0, true, at + 1 == of, true];
+        match (self.chart, self.piece.map(of_piece)) {
+            (Some(chart), _) => std::array::from_fn(|k| ends[k] && chart.border[k]),
+            (None, Some(reached)) => std::array::from_fn(|k| ends[k] && reached[k]),
+            (None, None) => ends,
         }
     }
 
     /// Points of the surface on a grid of relative positions in the frame.
     fn places(&self, surface: &dyn Surface<T>, shares: &[f64]) -> Vec<Vec3<T>> {
-        let [u0, u1, v0, v1] = self.ends.map(|t| t.re());
-        let within = |a: f64, b: f64, s: f64| match s {
-            0.0 => a,
-            1.0 => b,
-            s => a + (b - a) * s,
-        };
-        let us: Vec<f64> = shares.iter().map(|&s| within(u0, u1, s)).collect();
-        let vs: Vec<f64> = shares.iter().map(|&s| within(v0, v1, s)).collect();
+        let [us, vs] = self.parameters(shares);
         let mut points = vec![Vec3::zero(); us.len() * vs.len()];
         match self.chart {
             Some(chart) => {
@@ -443,8 +510,9 @@ const BESIDE: f64 = 1e-9;
 /// these a derivative would miss the strip swept by a moving break.
 fn moving<T: Real>(surface: &dyn Surface<T>, along: usize, ends: &[f64]) -> Vec<T> {
     let last = ends.len() - 1;
+    let kinks = if T::PARTS > 1 { std::mem::take(&mut surface.kinks()[along]) } else { Vec::new() };
     let end = |(k, &t): (usize, &f64)| {
-        let inner = T::PARTS > 1 && 0 < k && k < last;
+        let inner = 0 < k && k < last && kinks.iter().any(|kink| (kink - t).abs() < 1e-13);
         let aside = |k: usize| BESIDE * (ends[k + 1] - ends[k]);
         if inner {
             crease_rate(surface, along, t, [aside(k - 1), aside(k)]) + t
@@ -533,22 +601,77 @@ fn moving_chart<T: Real>(
 /// Parameters between the Chebyshev points at which an interpolation is checked.
 const PROBES: [f64; 3] = [0.071, 0.457, 0.893];
 
-/// The interpolation of a surface on a frame.
-fn fit<T: Real>(
-    surface: &dyn Surface<T>,
-    frame: &CellFrame<'_, T>,
-    reversed: bool,
-) -> Option<(PolynomialCell<T>, [f64; 2])> {
-    let points = frame.points(surface);
-    if !points.iter().all(|p| p.is_finite()) {
-        return None;
+/// The positions of a surface of which a cell is made, and positions between them.
+#[derive(Clone)]
+pub(crate) struct Samples<C> {
+    points: Vec<Vec3<C>>,
+    probes: Vec<Vec3>,
+}
+
+impl<C: Real> Samples<C> {
+    /// The cell, with the relative errors of its derivatives along u and v; `None` if a point is not finite.
+    pub fn interpolated(
+        &self,
+        border: [bool; 4],
+        reversed: bool,
+    ) -> Option<(PolynomialCell<C>, [f64; 2])> {
+        let finite = self.points.iter().all(|p| p.is_finite());
+        finite.then(|| interpolated(&self.points, &self.probes, border, reversed))?
     }
-    interpolated(&points, &frame.probes(surface), frame.border(), reversed)
+}
+
+/// Samples of a surface; all pieces between the same ends are sampled at once.
+pub(crate) struct Sampling<C> {
+    of_pieces: Vec<(PieceEnds, Vec<Samples<C>>)>,
+}
+
+/// Maximum number of ends whose samples are kept.
+const MOST_ENDS: usize = 32;
+
+impl<C: Real> Sampling<C> {
+    pub fn new() -> Self {
+        Self { of_pieces: Vec::new() }
+    }
+
+    /// The samples on a frame, each number turned by `number`; `evaluated` is called when the
+    /// surface is no longer needed.
+    pub fn on<T: Real>(
+        &mut self,
+        surface: &dyn Surface<T>,
+        frame: &CellFrame<'_, T>,
+        number: impl Fn(T) -> C + Copy,
+        evaluated: impl Fn(),
+    ) -> Samples<C> {
+        let turned = |points: &[Vec3<T>]| points.iter().map(|p| p.map(number)).collect();
+        let Some(ends) = frame.piece_ends() else {
+            let points = turned(&frame.points(surface));
+            let probes = frame.probes(surface);
+            evaluated();
+            return Samples { points, probes };
+        };
+        let known = self.of_pieces.iter().position(|(known, _)| *known == ends);
+        let at = known.unwrap_or_else(|| {
+            let points = frame.points_of_pieces(surface);
+            let probes = frame.places_in_pieces(surface, &PROBES);
+            let pieces = points.iter().zip(&probes).map(|(points, probes)| Samples {
+                points: turned(points),
+                probes: probes.iter().map(|p| p.re()).collect(),
+            });
+            let pieces = pieces.collect();
+            evaluated();
+            if self.of_pieces.len() == MOST_ENDS {
+                self.of_pieces.clear();
+            }
+            self.of_pieces.push((ends, pieces));
+            self.of_pieces.len() - 1
+        });
+        self.of_pieces[at].1[frame.piece()].clone()
+    }
 }
 
 /// The interpolation of points at the Chebyshev points, reduced to the lowest sufficient degree,
 /// and the relative errors of its derivatives along u and v; `probes` are positions between them.
-pub(crate) fn interpolated<T: Real>(
+fn interpolated<T: Real>(
     points: &[Vec3<T>],
     probes: &[Vec3],
     border: [bool; 4],

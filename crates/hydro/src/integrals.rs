@@ -413,6 +413,17 @@ pub(crate) fn rule_points<T: Real>(strip: &Strip<T>, coarser: usize) -> [usize; 
     [along, across]
 }
 
+/// The share of the length of a strip at a node of the rule across its lines, and its derivative.
+pub(crate) fn outer_share<T: Real>(strip: &Strip<T>, s: f64) -> (f64, f64) {
+    if strip.is_cut() {
+        let half = std::f64::consts::FRAC_PI_2;
+        let (sine, cosine) = (libm::sin(half * s), libm::cos(half * s));
+        (sine * sine, 2.0 * half * sine * cosine)
+    } else {
+        (s, 1.0)
+    }
+}
+
 /// The integrals over a strip by the finer (0) or the coarser (1) rule.
 pub(crate) fn integrated<T: Real>(
     strip: &Strip<T>,
@@ -426,13 +437,7 @@ pub(crate) fn integrated<T: Real>(
     let sign = strip.sign();
     let mut line = StripLine::default();
     for &(s, weight) in gauss_rule(outer) {
-        let (share, slope) = if strip.is_cut() {
-            let half = std::f64::consts::FRAC_PI_2;
-            let (sine, cosine) = (libm::sin(half * s), libm::cos(half * s));
-            (sine * sine, 2.0 * half * sine * cosine)
-        } else {
-            (s, 1.0)
-        };
+        let (share, slope) = outer_share(strip, s);
         let w = strip.from + length * share;
         let dw = length * (slope * weight);
         strip.line(w, &mut line);

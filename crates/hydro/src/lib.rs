@@ -23,6 +23,7 @@ mod hydrostatics;
 mod integrals;
 mod measures;
 mod pulled;
+mod pulled_strip;
 mod section;
 mod strip;
 mod trimmed;

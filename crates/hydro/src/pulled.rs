@@ -4,17 +4,20 @@
 //! `weights (dJ/dfigure) -> integrals, waterline -> nets of the cells -> points of the surfaces, cell by cell -> Adjoints`
 //!
 //! The cells are those of forward differentiation by a direction that is zero for none of the
-//! inputs but by chance. A cell that is wet as a whole is pulled by formulas, one that the water
-//! cuts by a recording of its own; of the surfaces the points of one cell are recorded at a time.
+//! inputs but by chance. Integrals are pulled by formulas ([`crate::pulled_strip`]); what halves a
+//! cell and where strips end is recorded. Of the surfaces the points of one cell are recorded at a
+//! time, or those of all pieces of a loft between the same ends.
 
 use crate::body::{Body, HullSide, fit_limits};
-use crate::cell::{CellFrame, PolynomialCell, SurfaceDivision, interpolated, pulled_points};
+use crate::cell::{CellFrame, PieceEnds, PolynomialCell, Sampling, SurfaceDivision, pulled_points};
 use crate::figures::{of_integrals, origin_of};
 use crate::hydrostatics::Symmetry;
-use crate::integrals::{HalvedCell, HydrostaticIntegrals, Immersed, integrated, rule_points};
-use crate::strip::{CoordinatePlane, Strip, StripLine, strips};
-use moldloft_num::{Adjoints, DerivativeTape, Dual, Real, Rev, Vec3, gauss_rule};
+use crate::integrals::{HalvedCell, HydrostaticIntegrals, Immersed};
+use crate::pulled_strip::{PulledStrip, pulled_strip};
+use crate::strip::{CoordinatePlane, Strip, strips};
+use moldloft_num::{Adjoints, DerivativeTape, Dual, Real, Rev, Vec3};
 use moldloft_parallel::on_one_thread;
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 /// Bytes of the stack of the thread that has the tape of the cells.
@@ -57,7 +60,13 @@ pub fn pull_hydrostatics(
     let mut frames: Vec<(usize, CellFrame<'_, Rev>)> = Vec::new();
     let mut cells: Vec<Arc<PolynomialCell<f64>>> = Vec::new();
     for (k, (side, division)) in sides.iter().zip(&divisions).enumerate() {
-        let mut fit = |frame: &CellFrame<'_, Rev>| probed_fit(side, frame);
+        // With their derivatives in the direction of the probes; what is recorded is forgotten.
+        let dual = |x: Rev| Dual::<1> { re: x.re(), eps: [x.probe(1)] };
+        let mut sampling = Sampling::new();
+        let mut fit = |frame: &CellFrame<'_, Rev>| {
+            let samples = sampling.on(side.surface, frame, dual, DerivativeTape::forget);
+            samples.interpolated(frame.border(), side.reversed)
+        };
         for (frame, cell) in division.cells(fit_limits(body.size, body.accuracy), &mut fit)? {
             frames.push((k, frame));
             cells.push(Arc::new(cell.re()));
@@ -66,16 +75,22 @@ pub fn pull_hydrostatics(
     cells.extend(body.panels.iter().map(|&p| Arc::new(PolynomialCell::of_panel(p))));
     let whole = Body::of_cells(cells, body.size, body.accuracy);
     let nets = on_one_thread(STACK_BYTES, || pulled_nets(&whole, body, weights))??;
-    for (at, (side, frame)) in frames.iter().enumerate() {
-        let own: Vec<&Vec<Vec3>> = nets.iter().map(|nets| &nets[at]).collect();
-        if own.iter().all(|net| net.iter().all(|w| *w == Vec3::zero())) {
-            continue;
-        }
-        let points = frame.points(sides[*side].surface);
-        let degree = whole.cells()[at].degree();
-        for (adjoints, net) in adjoints.iter_mut().zip(own) {
-            for (p, w) in points.iter().zip(pulled_points(degree, net)) {
-                (0..3).for_each(|axis| adjoints.add(p[axis], w[axis]));
+    for group in sampled_together(&frames) {
+        let weighted =
+            |at: &usize| nets.iter().any(|nets| nets[*at].iter().any(|w| *w != Vec3::zero()));
+        let group: Vec<usize> = group.into_iter().filter(weighted).collect();
+        let Some(&first) = group.first() else { continue };
+        let (side, frame) = &frames[first];
+        let points = match frame.piece_ends() {
+            Some(_) => frame.points_of_pieces(sides[*side].surface),
+            None => vec![frame.points(sides[*side].surface)],
+        };
+        for (adjoints, nets) in adjoints.iter_mut().zip(&nets) {
+            for &at in &group {
+                let weights = pulled_points(whole.cells()[at].degree(), &nets[at]);
+                for (p, w) in points[frames[at].1.piece()].iter().zip(weights) {
+                    (0..3).for_each(|axis| adjoints.add(p[axis], w[axis]));
+                }
             }
             adjoints.pull_local();
         }
@@ -87,21 +102,15 @@ pub fn pull_hydrostatics(
     Some(nets.iter().map(of_panels).collect())
 }
 
-/// The cell of a frame with its derivatives in the direction of the probes; what it records is
-/// forgotten.
-fn probed_fit(
-    side: &HullSide<'_, Rev>,
-    frame: &CellFrame<'_, Rev>,
-) -> Option<(PolynomialCell<Dual<1>>, [f64; 2])> {
-    let points = frame.points(side.surface);
-    if !points.iter().all(|p| p.is_finite()) {
-        return None;
+/// The indices of frames, those that share their samples together.
+fn sampled_together(frames: &[(usize, CellFrame<'_, Rev>)]) -> Vec<Vec<usize>> {
+    let mut groups: BTreeMap<(usize, Option<PieceEnds>, usize), Vec<usize>> = BTreeMap::new();
+    for (at, (side, frame)) in frames.iter().enumerate() {
+        let ends = frame.piece_ends();
+        let own = if ends.is_some() { 0 } else { at };
+        groups.entry((*side, ends, own)).or_default().push(at);
     }
-    let dual = |x: Rev| Dual { re: x.re(), eps: [x.probe(1)] };
-    let points: Vec<Vec3<Dual<1>>> = points.iter().map(|p| p.map(dual)).collect();
-    let probes = frame.probes(side.surface);
-    DerivativeTape::forget();
-    interpolated(&points, &probes, frame.border(), side.reversed)
+    groups.into_values().collect()
 }
 
 /// The weights of the nets of all cells. This thread's tape is its own.
@@ -209,49 +218,41 @@ impl NetPull<'_> {
         if found.is_empty() {
             return;
         }
-        let whole = match &found[..] {
-            [strip] if strip.is_all_of(&leaf.cell) => Some(pulled_whole(strip, self.origin, sums)),
-            _ => None,
-        };
         let count = self.body.cells().len();
         let (root, image) = (leaf.root % count, leaf.root >= count);
-        if let Some(own) = whole.as_ref().filter(|_| leaf.path.is_empty()) {
-            for (nets, own) in self.nets.iter_mut().zip(own) {
-                for (w, own) in nets[root].iter_mut().zip(own) {
-                    *w += if image { Vec3::of(-own.x, own.y, own.z) } else { *own };
+        if let [strip] = &found[..]
+            && leaf.path.is_empty()
+            && strip.is_all_of(&leaf.cell)
+        {
+            let pulled = pulled_strip(strip, self.cut, self.origin, sums);
+            for (nets, pulled) in self.nets.iter_mut().zip(pulled) {
+                for (w, own) in nets[root].iter_mut().zip(pulled.net) {
+                    *w += if image { Vec3::of(-own.x, own.y, own.z) } else { own };
                 }
             }
             return;
         }
+        // Halvings and the ends of strips are recorded, the integrals are not.
         DerivativeTape::clear();
         let inputs = self.body.cells()[root].with_numbers(DerivativeTape::input);
         let cell = match image {
             true => inputs.mapped(|p| Vec3::new(-p.x, p.y, p.z), true),
             false => inputs.clone(),
         };
-        let cell = Arc::new(cell.along_path(&leaf.path));
-        let mut all = HydrostaticIntegrals::zero();
-        if whole.is_none() {
-            let (cut, mut found) = (self.taped_cut(), Vec::new());
-            strips(&cell, cut, &mut found);
-            for strip in &found {
-                all.add(&integrated(strip, cut, Vec3::lifted(self.origin), 0));
+        let mut found = Vec::new();
+        strips(&Arc::new(cell.along_path(&leaf.path)), self.taped_cut(), &mut found);
+        let mut adjoints = vec![Adjoints::new(); sums.len()];
+        for strip in &found {
+            let pulled = pulled_strip(&strip.re(), self.cut, self.origin, sums);
+            for (adjoints, PulledStrip { net, ends }) in adjoints.iter_mut().zip(pulled) {
+                for (p, w) in strip.cell.net().iter().zip(net) {
+                    (0..3).for_each(|axis| adjoints.add(p[axis], w[axis]));
+                }
+                adjoints.add(strip.from, ends[0]);
+                adjoints.add(strip.to, ends[1]);
             }
         }
-        for (k, (nets, sums)) in self.nets.iter_mut().zip(sums).enumerate() {
-            let mut adjoints = Adjoints::new();
-            match &whole {
-                Some(own) => {
-                    for (p, w) in cell.net().iter().zip(&own[k]) {
-                        (0..3).for_each(|axis| adjoints.add(p[axis], w[axis]));
-                    }
-                }
-                None => {
-                    for (x, w) in all.numbers().into_iter().zip(sums.numbers()) {
-                        adjoints.add(x, w);
-                    }
-                }
-            }
+        for (nets, adjoints) in self.nets.iter_mut().zip(&mut adjoints) {
             adjoints.pull();
             if !adjoints.are_sound() {
                 DerivativeTape::refuse();
@@ -263,60 +264,10 @@ impl NetPull<'_> {
     }
 }
 
-/// The weights of the net of a strip that is a whole cell, of each sum: the transposed quadrature of
-/// [`integrated`].
-fn pulled_whole(
-    strip: &Strip<f64>,
-    origin: Vec3,
-    sums: &[HydrostaticIntegrals<f64>],
-) -> Vec<Vec<Vec3>> {
-    let cell = &strip.cell;
-    let [du, dv] = cell.degree();
-    let [along, across] = rule_points(strip, 0);
-    let sign = strip.sign();
-    let (count, step, stride) =
-        if strip.inner == 0 { (du + 1, 1, dv + 1) } else { (dv + 1, dv + 1, 1) };
-    let mut nets = vec![vec![Vec3::zero(); cell.net().len()]; sums.len()];
-    let mut line = StripLine::default();
-    let (mut at, mut by) = (vec![Vec3::zero(); count], vec![Vec3::zero(); count]);
-    for &(w, weight) in gauss_rule(across) {
-        strip.line(w, &mut line);
-        let (outer_basis, outer_slopes) =
-            crate::bernstein::basis(cell.degree()[1 - strip.inner], w);
-        for (net, sums) in nets.iter_mut().zip(sums) {
-            at.fill(Vec3::zero());
-            by.fill(Vec3::zero());
-            for &(t, inner_weight) in gauss_rule(along) {
-                let (basis, slopes) = crate::bernstein::basis(count - 1, t);
-                let (mut p, mut inner, mut outer) = (Vec3::zero(), Vec3::zero(), Vec3::zero());
-                for k in 0..count {
-                    p += line.at[k] * basis[k];
-                    inner += line.at[k] * slopes[k];
-                    outer += line.by[k] * basis[k];
-                }
-                let share = weight * inner_weight * sign;
-                let (of_p, of_n) = sums.pulled(p - origin, inner.cross(outer) * share);
-                let of_inner = outer.cross(of_n) * share;
-                let of_outer = of_n.cross(inner) * share;
-                for k in 0..count {
-                    at[k] += of_p * basis[k] + of_inner * slopes[k];
-                    by[k] += of_outer * basis[k];
-                }
-            }
-            for k in 0..count {
-                for m in 0..=cell.degree()[1 - strip.inner] {
-                    net[k * stride + m * step] += at[k] * outer_basis[m] + by[k] * outer_slopes[m];
-                }
-            }
-        }
-    }
-    nets
-}
-
 impl HydrostaticIntegrals<f64> {
     /// With these as weights: the derivatives of what a piece of skin adds to the sum, by its place
     /// and by its vector area.
-    fn pulled(&self, p: Vec3, n: Vec3) -> (Vec3, Vec3) {
+    pub(crate) fn pulled(&self, p: Vec3, n: Vec3) -> (Vec3, Vec3) {
         let mut of_p = Vec3::of(self.forms[0] * n.x, self.forms[1] * n.y, self.forms[2] * n.z);
         let mut of_n = Vec3::of(
             self.forms[0] * p.x + self.open[0],

@@ -244,12 +244,15 @@ impl<T: Real> Strip<T> {
         self.wet != Wet::All
     }
 
-    /// True when it is this whole cell. Wet lines alone do not make it one: where the plane cuts
-    /// along the lines, they end at the cut.
+    /// True when its lines are those of this whole cell.
     pub fn is_all_of(&self, cell: &Arc<PolynomialCell<T>>) -> bool {
-        self.wet == Wet::All
-            && (self.from.re(), self.to.re()) == (0.0, 1.0)
-            && Arc::ptr_eq(&self.cell, cell)
+        (self.from.re(), self.to.re()) == (0.0, 1.0) && Arc::ptr_eq(&self.cell, cell)
+    }
+
+    /// The strip without derivatives.
+    pub fn re(&self) -> Strip<f64> {
+        let Self { cell, inner, from, to, wet } = self;
+        Strip { cell: Arc::new(cell.re()), inner: *inner, from: from.re(), to: to.re(), wet: *wet }
     }
 
     /// 1 if the cross product of the inner and the outer derivative points outward, otherwise -1.

@@ -1,7 +1,7 @@
 //! Closed shapes: which parameters of a curve or surface wrap, and their values within the first
 //! turn.
 
-use crate::{Curve, Order, Real, Surface, Vec3};
+use crate::{Curve, Order, Real, SurfJet, Surface, Vec3};
 
 /// Distance beyond 0 and 1 at which a parameter still belongs to the end.
 const NEAR: f64 = 1e-9;
@@ -149,15 +149,20 @@ pub fn crease_rate<T: Real>(
     at: f64,
     [before, after]: [f64; 2],
 ) -> T {
-    let side = |h: f64, across: f64| {
-        let [u, v] = if along == 0 { [at + h, across] } else { [across, at + h] };
-        let jet = surface.jet(T::from(u), T::from(v), Order::First);
-        let slope = if along == 0 { jet.u } else { jet.v };
-        (jet.p - slope * T::from(h), slope.re())
+    let side = |h: f64| -> Vec<(Vec3<T>, Vec3)> {
+        let t = T::from(at + h);
+        let jets = match along {
+            0 => surface.line(t, &ALONG, Order::First),
+            _ => ALONG.iter().map(|&u| surface.jet(T::from(u), t, Order::First)).collect(),
+        };
+        let place = |jet: &SurfJet<T>| {
+            let slope = if along == 0 { jet.u } else { jet.v };
+            (jet.p - slope * T::from(h), slope.re())
+        };
+        jets.iter().map(place).collect()
     };
     let (mut gaps, mut squares, mut size) = (T::zero(), 0.0, 0.0f64);
-    for across in ALONG {
-        let ((p, low), (q, high)) = (side(-before, across), side(after, across));
+    for ((p, low), (q, high)) in side(-before).into_iter().zip(side(after)) {
         let turn = low - high;
         let gap = q - p;
         gaps += gap.x * turn.x + gap.y * turn.y + gap.z * turn.z;

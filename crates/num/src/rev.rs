@@ -150,15 +150,31 @@ impl DerivativeTape {
         TAPE.with_borrow_mut(|tape| {
             tape.peak = tape.bytes();
             let local = tape.ends.len() as u32 - tape.kept;
-            tape.ends.truncate(tape.kept as usize);
-            let end = tape.ends.last().map_or(0, |end| *end as usize);
-            tape.dependences.truncate(end);
-            let kept = tape.kept as usize;
-            if let Some(probes) = &mut tape.probes {
-                probes.truncate(kept);
-            }
+            tape.truncate(tape.kept as usize);
             tape.forgotten += u64::from(local);
         });
+    }
+
+    /// The result of `work`, whose numbers are all dropped: what it records is removed, and its nodes are given again.
+    /// Shapes that keep what they evaluate must not be evaluated in it.
+    pub fn unrecorded<R>(work: impl FnOnce() -> R) -> R {
+        let nodes = TAPE.with_borrow(|tape| tape.ends.len());
+        let result = work();
+        TAPE.with_borrow_mut(|tape| {
+            tape.peak = tape.bytes();
+            tape.truncate(nodes);
+        });
+        result
+    }
+
+    /// Removes all nodes but these.
+    fn truncate(&mut self, nodes: usize) {
+        self.ends.truncate(nodes);
+        let end = self.ends.last().map_or(0, |end| *end as usize);
+        self.dependences.truncate(end);
+        if let Some(probes) = &mut self.probes {
+            probes.truncate(nodes);
+        }
     }
 
     /// Maximum size of this recording so far, in bytes.
@@ -699,6 +715,17 @@ mod tests {
         // A number of a local recording is of no use after it.
         let _ = last + y;
         assert!(!DerivativeTape::is_sound());
+    }
+
+    #[test]
+    fn what_is_unrecorded_takes_no_space() {
+        DerivativeTape::clear();
+        let x = DerivativeTape::input(2.0);
+        let y = x * x;
+        let value = DerivativeTape::unrecorded(|| (y * y + x).re());
+        let z = y * x;
+        assert_eq!((value, z.node()), (18.0, y.node() + 1));
+        assert_eq!((gradient(z, [x, y])[0], DerivativeTape::is_sound()), (12.0, true));
     }
 
     #[test]

@@ -160,6 +160,15 @@ pub trait Surface<T: Real>: Send + Sync {
         Vec::new()
     }
 
+    /// Positions between joints that are at other v from u to u: at each of `us`, in each piece
+    /// between two joints, at each of `shares` of its width, in the order `[u][piece][share]`.
+    /// Derivatives are those of points that move with the joints.
+    ///
+    /// `None` for a surface with joints on lines v = const alone.
+    fn between_joints(&self, _us: &[f64], _shares: &[f64]) -> Option<Vec<Vec3<T>>> {
+        None
+    }
+
     /// The roots of the four edges, for joins: v = 0, u = 1, v = 1, u = 0, each in the direction of
     /// increasing parameter.
     fn edges(&self) -> Edges<T> {

@@ -208,6 +208,9 @@ impl<T: Real> Surface<T> for SurfaceRef<T> {
         }
         all
     }
+    fn between_joints(&self, us: &[f64], shares: &[f64]) -> Option<Vec<Vec3<T>>> {
+        self.shape.between_joints(us, shares)
+    }
     fn inner_planes(&self) -> Vec<InnerPlane<'_>> {
         self.shape.inner_planes()
     }

@@ -6,9 +6,12 @@ use super::masters::{Masters, Points};
 use crate::arguments::EndRule;
 use crate::faults;
 use moldloft_num::trace::Edges;
-use moldloft_num::{Axis, Curve, CurveJet, Jet, Order, Real, SurfJet, Surface, Uni1, Uni2, Vec3};
+use moldloft_num::{
+    Axis, Curve, CurveJet, DerivativeTape, Jet, Order, Real, SurfJet, Surface, Uni1, Uni2, Vec3,
+};
 use moldloft_registry::{Build, CallError, Context, CurveRef, FieldId, Kind, SurfaceRef, Value};
 use moldloft_spline::{End, Ends, InterpolatingSpline, InterpolationError, PiecewiseCubic};
+use std::ops::Range;
 
 /// A surface that interpolates its master curves: S(u, v) is the interpolating spline through the
 /// points C_1(u) ... C_N(u), evaluated at v; its knots are their chord lengths at that u.
@@ -106,18 +109,13 @@ impl<T: Real> Build<T> for CLoftSurf<T> {
         let masters = Masters::new(curves, Self::CURVES)?;
         let loft = Loft { masters, knots, ends, slopes, about: about.as_ref().map(About::new) };
         loft.check_off_axis(Self::ABOUT)?;
-        for u in TRIALS {
-            let points: Points<T> = loft.points(T::from(u));
-            if let Err(error) = loft.spline(&points)
-                && !is_one_point(&points)
-            {
-                return Err(faults::of_interpolation(
-                    error,
-                    "curve",
-                    [Self::CURVES, Self::DEGREE, Self::ENDS],
-                )
-                .help(format!("this happens at u = {u}")));
-            }
+        if let Some((u, error, _)) = loft.fault(|points| !is_one_point(points)) {
+            return Err(faults::of_interpolation(
+                error,
+                "curve",
+                [Self::CURVES, Self::DEGREE, Self::ENDS],
+            )
+            .help(format!("this happens at u = {u}")));
         }
         Ok(Value::Surface(SurfaceRef::new(loft, context.nesting)))
     }
@@ -161,9 +159,7 @@ impl<T: Real> Build<T> for XLoftSurf<T> {
         let names = if about.is_some() { ["r", "theta", "s"] } else { ["x", "y", "z"] };
         let loft = Loft { masters, knots: Knots::Axis(axis - 1), ends, slopes: None, about };
         loft.check_off_axis(Self::ABOUT)?;
-        for u in TRIALS {
-            let points: Points<T> = loft.points(T::from(u));
-            let Err(error) = loft.spline(&points) else { continue };
+        if let Some((u, error, points)) = loft.fault(|_| true) {
             let name = names[axis - 1];
             let InterpolationError::Coincident { second, .. } = error else {
                 return Err(faults::of_interpolation(
@@ -172,7 +168,7 @@ impl<T: Real> Build<T> for XLoftSurf<T> {
                     [Self::CURVES, Self::CURVES, Self::ENDS],
                 ));
             };
-            let values: Vec<String> = points.iter().map(|p| p[axis - 1].re().to_string()).collect();
+            let values: Vec<String> = points.iter().map(|p| p[axis - 1].to_string()).collect();
             let message = format!("{name} is not monotone from curve to curve at u = {u}");
             return Err(CallError::new("not-monotone", message)
                 .expected(format!(
@@ -221,6 +217,22 @@ impl<T: Real> Loft<T> {
             about.coordinates(&mut points);
         }
         points
+    }
+
+    /// The first of the parameters at which a new loft is tried without a spline through its points, if these
+    /// are to have one.
+    fn fault(
+        &self,
+        needed: impl Fn(&[Vec3<T>]) -> bool,
+    ) -> Option<(f64, InterpolationError, Vec<Vec3>)> {
+        TRIALS.into_iter().find_map(|u| {
+            let points: Points<T> = self.points(T::from(u));
+            let fault = || self.spline(&points).err();
+            // Masters may keep what they evaluate, the spline is dropped.
+            let error = if T::TAPED { DerivativeTape::unrecorded(fault) } else { fault() };
+            let error = error.filter(|_| needed(&points))?;
+            Some((u, error, points.iter().map(|p| p.re()).collect()))
+        })
     }
 
     /// On the line itself there is no angle about it.
@@ -274,6 +286,17 @@ impl<T: Real> Loft<T> {
                 }
                 InterpolatingSpline::with_knots(&knots, points, ends)
             }
+        }
+    }
+
+    /// The masters at which one polynomial across ends and another begins.
+    fn joints_across(&self) -> Range<usize> {
+        let last = self.masters.curves().len() - 1;
+        match (self.knots, self.ends) {
+            (Knots::Polyline, _) => 1..last,
+            (_, EndRule::NotAKnot) => 2..last - 1,
+            (_, EndRule::Bessel | EndRule::Quadratic) if last == 2 => 1..1,
+            _ => 1..last,
         }
     }
 
@@ -432,6 +455,26 @@ impl<T: Real> Surface<T> for Loft<T> {
         [self.masters.kinks(), Vec::new()]
     }
 
+    fn between_joints(&self, us: &[f64], shares: &[f64]) -> Option<Vec<Vec3<T>>> {
+        let joints = self.joints_across();
+        // About an axis the pieces are no cubics.
+        if self.about.is_some() || joints.is_empty() {
+            return None;
+        }
+        let mut ends = vec![0, self.masters.curves().len() - 1];
+        ends.splice(1..1, joints);
+        let mut points = Vec::with_capacity(us.len() * ends.len() * shares.len());
+        for &u in us {
+            let column = self.column(&self.points(T::from(u)))?;
+            let (knots, cubics) = (column.knots(), column.pieces().coefficients());
+            for piece in ends.windows(2) {
+                let (cubic, width) = (&cubics[piece[0]], knots[piece[1]] - knots[piece[0]]);
+                points.extend(shares.iter().map(|&share| along_cubic(cubic, width, share)));
+            }
+        }
+        Some(points)
+    }
+
     fn edge_made_of(&self, k: usize) -> Vec<moldloft_num::trace::Key> {
         self.masters.edge_made_of(k)
     }
@@ -470,7 +513,7 @@ fn rebased<S: Real>(spline: &PiecewiseCubic<S>, piece: usize) -> (f64, [Vec3<S>;
 fn stretches<'a, S: Real>(
     spline: &'a PiecewiseCubic<S>,
     vs: &'a [f64],
-) -> impl Iterator<Item = (usize, std::ops::Range<usize>)> + 'a {
+) -> impl Iterator<Item = (usize, Range<usize>)> + 'a {
     let knots = spline.knots();
     let last = knots.len() - 1;
     let mut begin = 0;
@@ -544,6 +587,19 @@ fn fill_on_tape<T: Real>(cubic: &[Vec3<T>; 4], s: &Plane, points: &mut [Vec3<T>]
         };
         *p = Vec3::from([0, 1, 2].map(coordinate));
     }
+}
+
+/// The cubic at a share of the width of its interval, each coordinate one node of a tape.
+fn along_cubic<T: Real>(&[a, b, c, d]: &[Vec3<T>; 4], width: T, share: f64) -> Vec3<T> {
+    let s = width.re() * share;
+    let coordinate = |axis: usize| {
+        let [a, b, c, d] = [a, b, c, d].map(|x| x[axis]);
+        let value = ((d.re() * s + c.re()) * s + b.re()) * s + a.re();
+        let slope = (3.0 * d.re() * s + 2.0 * c.re()) * s + b.re();
+        let terms = [(1.0, a), (s, b), (s * s, c), (s * s * s, d), (share * slope, width)];
+        T::linear(value, &terms)
+    };
+    Vec3::from([0, 1, 2].map(coordinate))
 }
 
 #[inline(always)]

@@ -117,6 +117,12 @@ impl<T: Real> Surface<T> for Image<T> {
         }
     }
 
+    fn between_joints(&self, us: &[f64], shares: &[f64]) -> Option<Vec<Vec3<T>>> {
+        let mut points = self.surface.between_joints(us, shares)?;
+        points.iter_mut().for_each(|p| *p = self.map.point(*p));
+        Some(points)
+    }
+
     moldloft_num::surface_facts!(breaks of [self.surface], closed of [self.surface], rational of [self.surface]);
 }
 

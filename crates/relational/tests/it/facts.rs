@@ -1,8 +1,8 @@
 //! Facts of shapes: breaks and kinks against jumps found by bisection; facts and batches forwarded
 //! by images.
 
-use crate::common::scene;
-use moldloft_num::{Curve, Order, Pace, Rational, SurfJet, Surface, Vec3};
+use crate::common::{run, scene};
+use moldloft_num::{Curve, Dual, Order, Pace, Rational, SurfJet, Surface, Vec3};
 use moldloft_registry::{Class, Context, Given, Scalar, SurfaceRef, Value, bind_arguments};
 use moldloft_testing::soak;
 use std::sync::Arc;
@@ -242,5 +242,84 @@ fn images_hand_on_facts_and_batches() {
         }
         assert_eq!(jets.load(Ordering::Relaxed), 0, "{name}");
         assert_eq!(batches.load(Ordering::Relaxed), 4 * uv.len(), "{name}");
+    }
+}
+
+/// Lofts through five curves, and the masters at which their pieces end.
+const LOFTS: [(&str, &str, &[usize]); 6] = [
+    ("s", "CLoftSurf s({a, b, c, d, e});", &[0, 2, 4]),
+    ("n", "CLoftSurf n({a, b, c, d, e}, ends = \"natural\");", &[0, 1, 2, 3, 4]),
+    ("t", "CLoftSurf t({a, b, c, d, e}, degree = 1);", &[0, 1, 2, 3, 4]),
+    ("x", "XLoftSurf x(1, {a, b, c, d, e});", &[0, 2, 4]),
+    ("m", "CLoftSurf o({a, b, c, d, e}); MirrSurf m(o, \"y=0\");", &[0, 2, 4]),
+    // One cubic, and one parabola.
+    ("r", "CLoftSurf r({a, b, c, d}); CLoftSurf p({a, b, c}, ends = \"bessel\");", &[]),
+];
+
+fn lofts() -> String {
+    let lofts: String = LOFTS.iter().map(|(_, text, _)| *text).collect();
+    format!(
+        "AbsPoint A(0, 0, 2); AbsPoint B(1, 0, -1); AbsPoint C(4, 2, 2); AbsPoint D(4, 1.5, -1); \
+         AbsPoint E(4, 0, -1.5); AbsPoint F(8, 1.5, 2); AbsPoint G(8, 0, -0.5); AbsPoint H(9, 1, 2); \
+         AbsPoint I(9.5, 0, 0); AbsPoint J(10, 1, 2); AbsPoint K(10.5, 0, 1); Line a(A, B); \
+         BCurve b({{C, D, E}}); Line c(F, G); Line d(H, I); Line e(J, K); {lofts}"
+    )
+}
+
+#[test]
+fn pieces_of_lofts_are_between_their_masters() {
+    let scene = scene(&lofts());
+    let surface = |name: &str| scene.surface(name);
+    let master =
+        |at: usize, u: f64| scene.curve(["a", "b", "c", "d", "e"][at]).jet(u, Order::Zero)[0];
+    let (us, shares) = ([0.0, 0.3, 1.0], [0.0, 0.25, 1.0]);
+    assert!(surface("p").between_joints(&us, &shares).is_none());
+    for (name, _, ends) in LOFTS {
+        let points = surface(name).between_joints(&us, &shares);
+        assert_eq!(points.is_none(), ends.is_empty(), "{name}");
+        let Some(points) = points else { continue };
+        assert_eq!(points.len(), us.len() * (ends.len() - 1) * shares.len(), "{name}");
+        let columns = points.chunks((ends.len() - 1) * shares.len());
+        for (column, &u) in columns.zip(&us) {
+            for (piece, ends) in column.chunks(shares.len()).zip(ends.windows(2)) {
+                let [from, to] = [ends[0], ends[1]].map(|at| {
+                    let p = master(at, u);
+                    if name == "m" { Vec3::new(p.x, -p.y, p.z) } else { p }
+                });
+                assert!(piece[0].distance(from) < 1e-13 && piece[2].distance(to) < 1e-13, "{name}");
+                if name == "t" {
+                    assert!(piece[1].distance(from + (to - from) * 0.25) < 1e-13);
+                }
+                if name == "x" {
+                    // x is linear in v.
+                    let (first, last) = (master(0, u).x, master(4, u).x);
+                    let v = (piece[1].x - first) / (last - first);
+                    let on = surface(name).jet(u, v, Order::Zero).p;
+                    assert!(piece[1].distance(on) < 1e-13);
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn pieces_of_lofts_move_with_their_joints() {
+    let (us, shares) = ([0.3, 0.8], [0.0, 0.25, 0.9]);
+    // Of the coordinates; options follow.
+    let scale = |k: usize| if k < 33 { f64::from(k as u32 * 37 % 11) - 5.0 } else { 0.0 };
+    let moved = |h: f64| run::<f64>(&lofts(), &mut |k, x| x + h * scale(k)).unwrap();
+    let seeded = |k: usize, x: f64| Dual::<4> { re: x, eps: [scale(k), 0.0, 0.0, 0.0] };
+    let dual = run::<Dual<4>>(&lofts(), &mut |k, x| seeded(k, x)).unwrap();
+    let h = 1e-5;
+    let (before, after) = (moved(-h), moved(h));
+    for (name, ..) in LOFTS.iter().filter(|(.., ends)| !ends.is_empty()) {
+        let points = dual.surface(name).between_joints(&us, &shares).unwrap();
+        let beside = [&before, &after].map(|s| s.surface(name).between_joints(&us, &shares));
+        let [before, after] = beside.map(Option::unwrap);
+        for (p, (a, b)) in points.iter().zip(before.iter().zip(&after)) {
+            let exact = (*b - *a) * (0.5 / h);
+            let found = p.map(|x| x.eps[0]);
+            assert!(found.distance(exact) < 1e-7 * exact.norm(), "{name}: {found:?} {exact:?}");
+        }
     }
 }
