@@ -8,11 +8,11 @@ volume in mm³. The files are not in the repository: FOLDER/OWNER/NAME/PATH is w
 expected, other contents are named and skipped. `--measure` writes OCCT's figures anew.
 
 One line for each CAD file: the outcome, our faces, the differences of exact area and volume and of
-those of panels, whether the panels are closed, seconds of import (processor time, without OCCT's), and size of the program relative
-to the file. Outcomes are `same`; `differs`, if exact area or volume is more than 1e-6 off, or
-panels more than 1e-3; `open`, if panels of closed solids are open; `refused`, `died` and `late`.
-Remarks follow. Meshes are compared with trimesh, as by `mesh_twins.py`. The exit status is 1 if a
-file with faces gives nothing.
+those of panels, whether the panels are closed, seconds of import (processor time of this process,
+without OCCT's), and size of the program relative to the file. Outcomes are `same`; `differs`, if
+exact area or volume is more than 1e-6 off, or panels more than 1e-3; `open`, if panels of closed
+solids are open; `refused`, `died` and `late`. Remarks follow. Meshes are compared with trimesh, as
+by `mesh_twins.py`. The exit status is 1 if a file with faces gives nothing.
 """
 
 from __future__ import annotations
@@ -109,7 +109,7 @@ def by_us(path: Path) -> dict[str, Any]:
     found |= {"faces": len(names), "closed": bool(mesh.closed and names)}
     found |= {"panel_area": mesh.area, "panel_volume": mesh.volume}
     found["area"] = sum(model[name].area for name in names)
-    if names:
+    if found["closed"]:
         level = float(mesh.vertices[:, 2].max())
         size = float((mesh.vertices.max(axis=0) - mesh.vertices.min(axis=0)).max())
         found["volume"] = model.hydrostatics(level=level + size).volume
@@ -150,8 +150,8 @@ def judged(ours: dict[str, Any], known: dict[str, float | None]) -> tuple[str, s
     for outcome in ("refused", "died", "late"):
         if outcome in ours:
             return outcome, str(ours[outcome])
-    exact = [off(ours[k], known[k]) for k in ("area", "volume")]
-    panels = [off(ours[f"panel_{k}"], known[k]) for k in ("area", "volume")]
+    exact = [off(ours.get(k), known[k]) for k in ("area", "volume")]
+    panels = [off(ours.get(f"panel_{k}"), known[k]) for k in ("area", "volume")]
     near = all(d is None or abs(d) <= EXACT for d in exact)
     near = near and all(d is None or abs(d) <= PANELS for d in panels)
     outcome = "same" if near else "differs"
