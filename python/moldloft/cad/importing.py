@@ -325,22 +325,26 @@ _POLE = 1e-9
 """Size of an edge's control points, relative to the model, below which they are one point."""
 
 
+def _poles(surface: Nurbs) -> list[tuple[Any, Any]]:
+    """The edges that are points: numbers of their control points, and the point."""
+    net = surface.points
+    flat = net.reshape(-1, 3)
+    near = _POLE * float(np.ptp(flat, axis=0).max())
+    numbers = np.arange(len(flat)).reshape(net.shape[:2])
+    edges = numbers[:, 0], numbers[-1], numbers[:, -1], numbers[0]
+    return [(e, flat[e].mean(axis=0)) for e in edges if np.ptp(flat[e], axis=0).max() <= near]
+
+
 def _whole(face: ImportedFace, taken: set[str], counts: tuple[int, int], moved: bool) -> list[str]:
     """A surface; a degenerate edge uses a single point object, which marks the pole for panels."""
-    net = face.surface.points
-    near = _POLE * float(np.ptp(net.reshape(-1, 3), axis=0).max())
-    numbers = np.arange(net.shape[0] * net.shape[1]).reshape(net.shape[:2])
     lines: list[str] = []
     named: dict[int, str] = {}
-    for edge in (numbers[:, 0], numbers[-1], numbers[:, -1], numbers[0]):
-        places = net.reshape(-1, 3)[edge]
-        if np.ptp(places, axis=0).max() > near:
-            continue
+    for edge, place in _poles(face.surface):
         pole = f"{face.name}_pole{len(lines) + 1}"
         while pole in taken:
             pole += "_"
         taken.add(pole)
-        at = ", ".join(map(_plain, places.mean(axis=0)))
+        at = ", ".join(map(_plain, place))
         if moved:
             at = ", ".join(f"at({{{at}}}).{axis}" for axis in "xyz")
         lines.append(f"AbsPoint {pole}({at}, visible = 0);")
