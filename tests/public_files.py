@@ -18,6 +18,7 @@ by `mesh_twins.py`. The exit status is 1 if a file with faces gives nothing.
 from __future__ import annotations
 
 import argparse
+import contextlib
 import hashlib
 import json
 import os
@@ -112,7 +113,8 @@ def by_us(path: Path) -> dict[str, Any]:
     if found["closed"]:
         level = float(mesh.vertices[:, 2].max())
         size = float((mesh.vertices.max(axis=0) - mesh.vertices.min(axis=0)).max())
-        found["volume"] = model.hydrostatics(level=level + size).volume
+        with contextlib.suppress(moldloft.Error):
+            found["volume"] = model.hydrostatics(level=level + size).volume
     return found
 
 

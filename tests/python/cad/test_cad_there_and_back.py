@@ -25,6 +25,12 @@ SOAK = os.environ.get("MOLDLOFT_SOAK") == "1"
 CLOSED = ("car_body", "caisson", "bracket", "lock", "semisubmersible", "spar", "tug")
 SOURCES = [*(f"gallery/{n}.sdl" for n in (CLOSED if SOAK else CLOSED[:2]))]
 SOURCES += [f"random {k}" for k in range(20 if SOAK else 3)]
+#: A trimmed face with kinks, whose panels cut across them without a warning.
+COARSE = pytest.mark.xfail(strict=True, reason="panels of a kinked trimmed face miss 3 % of it")
+CASES = [
+    pytest.param(n, e, marks=[COARSE] if (n, e) == ("random 2", "igs") else [])
+    for n in SOURCES for e in ("step", "igs", "3dm", "brep")
+]  # fmt: skip
 
 
 @cache
@@ -62,8 +68,7 @@ def kinds(mesh: moldloft.Mesh) -> set[tuple[str, int]]:
     return found
 
 
-@pytest.mark.parametrize("ending", ["step", "igs", "3dm", "brep"])
-@pytest.mark.parametrize("name", SOURCES)
+@pytest.mark.parametrize(("name", "ending"), CASES)
 def test_a_closed_model_comes_back(name: str, ending: str, tmp_path: Path) -> None:
     model = source(name)
     unit = model.length_unit[0]
