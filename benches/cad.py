@@ -5,8 +5,8 @@
 Import of 20, 160 and 2 000 faces (STEP: blocks with four bores, no two alike), with OCCT's reading
 and CadQuery's; panels of 160 faces within a chord and an angle, and OCCT's; the panels' STL, read
 by us and by meshio; hydrostatics of HULL, a STEP or IGES file of a closed hull in metres that
-floats at z = 0 (without it Wigley's), and of OCCT's cut. Least processor time of three runs, those
-of child processes included; peers that are not installed are named.
+floats at z = 0 (without it the tug of the gallery), and of the cut of OCCT. Least processor time of
+three runs, those of child processes included; peers that are not installed are named.
 """
 
 from __future__ import annotations
@@ -27,14 +27,7 @@ from moldloft.cad.importing import load_cad
 #: Chord in millimetres and angle in radians of panels.
 CHORD, ANGLE = 0.02, 0.2
 
-WIGLEY = """
-Model info(units = "m t", symmetry = "y");
-BSurf hull({{-5, 0, 0}, {0, 1, 0}, {5, 0, 0}, {-5, 0, -0.3125}, {0, 1, -0.3125}, {5, 0, -0.3125},
-    {-5, 0, -0.625}, {0, 0, -0.625}, {5, 0, -0.625}}, nu = 3, nv = 3, degree_u = 2, degree_v = 2);
-BCurve sheer({{-5, 0, 0}, {0, 1, 0}, {5, 0, 0}}); Line middle({-5, 0, 0.3}, {5, 0, 0.3});
-BCurve top({{-5, 0, 0.3}, {0, 1, 0.3}, {5, 0, 0.3}});
-RuledSurf side(sheer, top); RuledSurf deck(top, middle);
-"""
+HULL = Path(__file__).parents[1] / "examples" / "gallery" / "tug.sdl"
 
 
 def spent() -> float:
@@ -155,7 +148,7 @@ def floated(hull: Path | None, folder: Path) -> None:
     from OCP.GProp import GProp_GProps
 
     if hull is None:
-        (hull,) = moldloft.loads(WIGLEY).write(folder / "hull.step")
+        (hull,) = moldloft.load(HULL).write(folder / "hull.step")
     model = load_cad(hull)
     shape = occt(hull)
     box = Bnd_Box()

@@ -413,8 +413,7 @@ class _Labels:
         if known:
             self.seen.add(number)
             label = self.numbered[number]
-        # Some programs write NONE for no name.
-        label = f"face{self.count}" if label in ("", "NONE") else label
+        label = f"face{self.count}" if label in _UNNAMED else label
         return label, f"face #{number} (`{label}`)" if known else f"face `{label}`"
 
 
@@ -429,7 +428,7 @@ def _solids(shape: Any) -> list[Any]:
     return faces_of(shape, TopAbs_SOLID)
 
 
-_UNNAMED = {"", "NONE", "SOLID", "SHELL", "COMPOUND", "ASSEMBLY"}
+_UNNAMED = {"", "NONE", "FACE", "SOLID", "SHELL", "COMPOUND", "ASSEMBLY"}
 """Default names of unnamed shapes."""
 
 
