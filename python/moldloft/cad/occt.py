@@ -147,30 +147,27 @@ def cad_bytes(path: Path) -> bytes:
     return data.removeprefix(b"\xef\xbb\xbf")
 
 
-def _of_brep(path: Path, data: bytes, metres: float) -> Imported:
-    """The faces and curves of a BREP shape, which is assumed to be in millimetres."""
+def _step_of_brep(path: Path, data: bytes) -> str:
+    """A BREP shape, taken to be in millimetres, as the text of a STEP file.
+
+    Reading it, OCCT mends what a BREP file may have: curves of trims off their edges, and faces
+    that close upon themselves without a seam.
+    """
     from OCP.BRep import BRep_Builder
-    from OCP.BRepBuilderAPI import BRepBuilderAPI_Transform
     from OCP.BRepTools import BRepTools
-    from OCP.gp import gp_Pnt, gp_Trsf
+    from OCP.STEPControl import STEPControl_AsIs, STEPControl_Writer
     from OCP.TopoDS import TopoDS_Shape
-    from OCP.XCAFDoc import XCAFDoc_DocumentTool
 
     shape = TopoDS_Shape()
     BRepTools.Read_s(shape, io.BytesIO(data), BRep_Builder())
     if shape.IsNull():
         raise FileError(f"cannot read `{path}`: not a BREP file that OCCT takes")
-    scale = gp_Trsf()
-    scale.SetScale(gp_Pnt(0, 0, 0), 1e-3 / metres)
-    shape = BRepBuilderAPI_Transform(shape, scale, True).Shape()
-    document = _document(metres)
-    XCAFDoc_DocumentTool.ShapeTool_s(document.Main()).AddShape(shape)
-    found = Imported(metres=metres)
-    found.remarks.append("a BREP file states no unit: its numbers are taken as millimetres")
-    _collect(_Names(document), [(Sewn(shape), NOWHERE)], found, {}, set())
-    if not found.faces and not found.curves:
-        raise FileError(f"cannot read `{path}`: it contains no face and no curve")
-    return found
+    with tempfile.TemporaryDirectory() as folder, _quiet():
+        copy = Path(folder) / "model.step"
+        writer = STEPControl_Writer()
+        writer.Transfer(shape, STEPControl_AsIs)
+        writer.Write(str(copy))
+        return copy.read_text(encoding="latin-1") if copy.exists() else ""
 
 
 def of_part(
@@ -200,14 +197,15 @@ def of_part(
     """
     needed("OCP", "cadquery-ocp-novtk", "reading STEP, IGES and BREP")
     data = cad_bytes(path)
-    if path.suffix.lower() in (".brep", ".brp"):
-        return _of_brep(path, data, metres)
     if not data.strip():
         raise FileError(f"cannot read `{path}`: the file is empty")
     iges = path.suffix.lower() in (".igs", ".iges")
     text, said = data.decode("latin-1"), list[str]()
     if path.suffix.lower() == ".3dm":
         text, said = step_text(path, data)
+    if path.suffix.lower() in (".brep", ".brp"):
+        text = _step_of_brep(path, data)
+        said = ["a BREP file states no unit: its numbers are taken as millimetres"]
     source = IgesText.of(path, text) if iges else StepText.of(path, text)
     source.remarks[:0] = said
     if isinstance(source, StepText) and numbers is not None:
