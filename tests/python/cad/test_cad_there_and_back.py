@@ -10,6 +10,7 @@ import warnings
 from functools import cache
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 import moldloft
@@ -25,12 +26,14 @@ SOAK = os.environ.get("MOLDLOFT_SOAK") == "1"
 CLOSED = ("car_body", "caisson", "bracket", "lock", "semisubmersible", "spar", "tug")
 SOURCES = [*(f"gallery/{n}.sdl" for n in (CLOSED if SOAK else CLOSED[:2]))]
 SOURCES += [f"random {k}" for k in range(20 if SOAK else 3)]
-#: A trimmed face with kinks, whose panels cut across them without a warning.
-COARSE = pytest.mark.xfail(strict=True, reason="panels of a kinked trimmed face miss 3 % of it")
+#: Platforms, whose legs come back open at a circle, although each is a solid in the file.
+OPEN = pytest.mark.xfail(strict=True, reason="legs of platforms are open after 3DM")
+PLATFORMS = ("random 3", "random 8", "random 13", "random 18")
 CASES = [
-    pytest.param(n, e, marks=[COARSE] if (n, e) == ("random 2", "igs") else [])
-    for n in SOURCES for e in ("step", "igs", "3dm", "brep")
-]  # fmt: skip
+    pytest.param(name, ending, marks=[OPEN] if name in PLATFORMS and ending == "3dm" else [])
+    for name in SOURCES
+    for ending in ("step", "igs", "3dm", "brep")
+]
 
 
 @cache
@@ -59,6 +62,12 @@ def back(path: Path, units: str) -> moldloft.Model:
         return load_cad(path, units=units)
 
 
+def volume(model: moldloft.Model, mesh: moldloft.Mesh) -> float:
+    """The volume of the body, of its surfaces and not of panels."""
+    over = float(mesh.vertices[:, 2].max() + np.ptp(mesh.vertices, axis=0).max())
+    return model.hydrostatics(level=over).volume
+
+
 def kinds(mesh: moldloft.Mesh) -> set[tuple[str, int]]:
     """Names and colours of faces; parts and images of a surface have its name and a number."""
     found = set()
@@ -78,8 +87,10 @@ def test_a_closed_model_comes_back(name: str, ending: str, tmp_path: Path) -> No
     found = back(written(model, tmp_path / f"model.{ending}"), "mm" if ending == "brep" else unit)
     again = found.mesh()
     assert again.closed and again.volume > 0
-    assert again.volume == pytest.approx(mesh.volume, rel=1e-2)
-    assert again.area == pytest.approx(mesh.area, rel=1e-2)
+    # The volume of the surfaces themselves, all under water.
+    # A set has that of its triangles.
+    near = 2e-3 if any(model[n].kind == "SetBody" for n in model.objects) else 1e-5
+    assert volume(found, again) == pytest.approx(volume(model, mesh), rel=near)
     if ending == "brep":
         return
     assert kinds(again) == kinds(mesh)
