@@ -281,48 +281,20 @@ def _closed(trims: list[_Trim]) -> list[_Trim]:
     return found
 
 
-def brep(shape: Boundary, faces: Iterable[int], colours: bool = True) -> dict[str, Any]:
-    """Faces of a model with their common edges, for `rhino3dm.CommonObject.Decode`.
-
-    Parameters
-    ----------
-    shape
-        The model; its normals are those of its surfaces.
-    faces
-        Numbers of the faces.
-    colours
-        True to give each face its colour.
-
-    Raises
-    ------
-    FormatError
-        If an edge has no curve in the parameters of its face.
-    """
-    held = [shape.faces[k] for k in faces]
-    made = [_loops(shape, face) for face in held]
-    all_loops = [(f, k, loop) for f, (_, loops) in enumerate(made) for k, loop in enumerate(loops)]
-    trims: list[_Trim] = []
-    for number, (_, _, loop) in enumerate(all_loops):
-        for trim in loop:
-            trim.loop = number
-            trims.append(trim)
-    used = sorted({trim.edge for trim in trims if trim.edge >= 0})
-    edge_of = {edge: k for k, edge in enumerate(used)}
-    users: dict[int, list[int]] = {edge: [] for edge in used}
-    for k, trim in enumerate(trims):
-        if trim.edge >= 0:
-            users[trim.edge].append(k)
-    for own in users.values():
-        if len(own) > 1:
-            face_of = {all_loops[trims[k].loop][0] for k in own}
-            sides = {trims[k].side for k in own}
-            seam = len(face_of) == 1 and sides in ({_W, _E}, {_S, _N})
-            for k in own:
-                trims[k].type = _SEAM if seam else _MATED
+def _tables(
+    shape: Boundary,
+    held: list[Face],
+    trims: list[_Trim],
+    all_loops: list[tuple[int, int, list[_Trim]]],
+    users: dict[int, list[int]],
+    colours: bool,
+) -> list[_Chunk]:
+    """The records of vertices, edges, trims, loops and faces."""
+    edge_of = {edge: k for k, edge in enumerate(users)}
     points = sorted({v for trim in trims for v in trim.ends})
     vertex_of = {v: k for k, v in enumerate(points)}
     at: dict[int, list[int]] = {v: [] for v in points}
-    for edge in used:
+    for edge in users:
         at[shape.edges[edge].start].append(edge_of[edge])
         at[shape.edges[edge].end].append(edge_of[edge])
     gap = max(2 * shape.gap, 1e-9)
@@ -357,6 +329,53 @@ def brep(shape: Boundary, faces: Iterable[int], colours: bool = True) -> dict[st
     tail = bytes(16 * len(held)) + bytes([int(colours)])
     if colours:
         tail += b"".join(bytes([*(face.colour or (0, 0, 0)), 0]) for face in held)
+    return [
+        _array(vertices),
+        _array(edges),
+        _array(trim_records),
+        _array(loop_records),
+        _array(face_records, tail, 2),
+    ]
+
+
+def brep(shape: Boundary, faces: Iterable[int], colours: bool = True) -> dict[str, Any]:
+    """Faces of a model with their common edges, for `rhino3dm.CommonObject.Decode`.
+
+    Parameters
+    ----------
+    shape
+        The model; its normals are those of its surfaces.
+    faces
+        Numbers of the faces.
+    colours
+        True to give each face its colour.
+
+    Raises
+    ------
+    FormatError
+        If an edge has no curve in the parameters of its face.
+    """
+    held = [shape.faces[k] for k in faces]
+    made = [_loops(shape, face) for face in held]
+    all_loops = [(f, k, loop) for f, (_, loops) in enumerate(made) for k, loop in enumerate(loops)]
+    trims: list[_Trim] = []
+    for number, (_, _, loop) in enumerate(all_loops):
+        for trim in loop:
+            trim.loop = number
+            trims.append(trim)
+    used = sorted({trim.edge for trim in trims if trim.edge >= 0})
+    users: dict[int, list[int]] = {edge: [] for edge in used}
+    for k, trim in enumerate(trims):
+        if trim.edge >= 0:
+            users[trim.edge].append(k)
+    for own in users.values():
+        if len(own) > 1:
+            face_of = {all_loops[trims[k].loop][0] for k in own}
+            sides = {trims[k].side for k in own}
+            seam = len(face_of) == 1 and sides in ({_W, _E}, {_S, _N})
+            for k in own:
+                trims[k].type = _SEAM if seam else _MATED
+    tables = _tables(shape, held, trims, all_loops, users, colours)
     every = np.concatenate([surface.points.reshape(-1, 3) for surface, _ in made])
     none = _chunk(_ANONYMOUS, bytes(len(held)))
     data = _object(
@@ -365,11 +384,7 @@ def brep(shape: Boundary, faces: Iterable[int], colours: bool = True) -> dict[st
         _objects([_curve(trim.path, 2) for trim in trims]),
         _objects([_curve(shape.edges[edge].curve, 3) for edge in used]),
         _objects([_surface(surface) for surface, _ in made]),
-        _array(vertices),
-        _array(edges),
-        _array(trim_records),
-        _array(loop_records),
-        _array(face_records, tail, 2),
+        *tables,
         _doubles([every.min(axis=0), every.max(axis=0)]),
         none,
         none,
