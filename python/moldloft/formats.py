@@ -114,7 +114,7 @@ PYTHON_ROWS = (
     ),
     Format(
         "3dm",
-        "Rhino: surfaces and trimmed planes (needs rhino3dm)",
+        "Rhino: surfaces, trimmed faces and solids (needs rhino3dm)",
         aliases=("rhino",),
         holds="surfaces",
         writer="moldloft.cad.rhino:encode",

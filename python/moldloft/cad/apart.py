@@ -20,7 +20,7 @@ import numpy as np
 
 from moldloft.budget import limits
 from moldloft.cad import check_occt, needed
-from moldloft.cad.faces import Imported, ImportedFace, ImportedSide
+from moldloft.cad.faces import Imported, ImportedFace, ImportedSide, Placement
 from moldloft.cad.occt import cad_bytes, of_part
 from moldloft.cad.part21 import StepText
 from moldloft.cad.rhino_reading import meshes
@@ -47,7 +47,7 @@ _TRIES = 24
 """Maximum number of partial reads of a file in the search for the entity that crashes OCCT."""
 
 
-def read(path: Path, metres: float) -> Imported:
+def read(path: Path, metres: float, *, components: bool = False) -> Imported:
     """The faces and curves of a CAD file; ``metres`` is the length of its unit.
 
     Parameters
@@ -56,6 +56,8 @@ def read(path: Path, metres: float) -> Imported:
         The file.
     metres
         Unit of length of the result, in metres.
+    components
+        True for products of a STEP file that are placed more than once as parts of their own.
 
     Raises
     ------
@@ -65,9 +67,9 @@ def read(path: Path, metres: float) -> Imported:
     check_occt("reading STEP and IGES")
     if not sys.executable:
         # A program that embeds Python: there is no interpreter to start.
-        return of_part(path, metres, None)
+        return of_part(path, metres, None, components=components)
     spending = _Spending(path)
-    answer = _asked(path, metres, None, spending)
+    answer = _asked(path, metres, None, spending, components)
     if isinstance(answer, Imported):
         return answer
     numbers: list[int] = []
@@ -213,11 +215,16 @@ _worker = _Worker()
 
 
 def _asked(
-    path: Path, metres: float, numbers: list[int] | None, spending: _Spending
+    path: Path,
+    metres: float,
+    numbers: list[int] | None,
+    spending: _Spending,
+    components: bool = False,
 ) -> Imported | str:
     """Data of some or all faces read by another process, or the cause of its end."""
     before = _children()
-    answer = _worker.ask(_request(path, spending) | {"metres": metres, "faces": numbers})
+    wanted = {"metres": metres, "faces": numbers, "components": components}
+    answer = _worker.ask(_request(path, spending) | wanted)
     if isinstance(answer, str):
         # What ended over the file is known by its time; a part that took all leaves none.
         ended = " ended over the file" in answer
@@ -283,7 +290,13 @@ def _imported(answer: dict[str, Any], metres: float) -> Imported:
         for face in answer["faces"]
     ]
     curves = {name: _nurbs(curve) for name, curve in answer["curves"].items()}
-    return Imported(faces, curves, metres, answer["remarks"])
+    parts = {name: _imported(part, metres) for name, part in answer["parts"].items()}
+    placed = [
+        Placement(part, name, tuple(origin), tuple(x_axis), tuple(y_axis))
+        for part, name, origin, x_axis, y_axis in answer["placed"]
+    ]
+    reserved = tuple(answer["reserved"])
+    return Imported(faces, curves, metres, answer["remarks"], parts, placed, reserved)
 
 
 def _answer(request: dict[str, Any]) -> dict[str, Any]:
@@ -291,7 +304,8 @@ def _answer(request: dict[str, Any]) -> dict[str, Any]:
     try:
         if "arrays_in" in request:
             return _meshes(request)
-        found = of_part(Path(request["path"]), request["metres"], request["faces"])
+        path, metres = Path(request["path"]), request["metres"]
+        found = of_part(path, metres, request["faces"], components=request["components"])
     except Error as error:
         return {"refused": str(error)}
     except MemoryError:
@@ -299,6 +313,10 @@ def _answer(request: dict[str, Any]) -> dict[str, Any]:
     except Exception as error:
         # OCCT's own exceptions have no common class here.
         return {"fault": f"{type(error).__name__}: {error}".splitlines()[0][:200]}
+    return _sent_content(found)
+
+
+def _sent_content(found: Imported) -> dict[str, Any]:
     faces = [
         {
             "name": face.name,
@@ -312,7 +330,10 @@ def _answer(request: dict[str, Any]) -> dict[str, Any]:
         for face in found.faces
     ]
     curves = {name: _sent(curve) for name, curve in found.curves.items()}
-    return {"faces": faces, "curves": curves, "remarks": found.remarks}
+    parts = {name: _sent_content(part) for name, part in found.parts.items()}
+    sent = {"faces": faces, "curves": curves, "remarks": found.remarks, "parts": parts}
+    placed = [list(place) for place in found.placed]
+    return sent | {"placed": placed, "reserved": list(found.reserved)}
 
 
 _ARRAYS = ("points", "corners")

@@ -10,7 +10,16 @@ import numpy as np
 from moldloft import _core
 from moldloft.shapes.nurbs import Nurbs
 
-__all__ = ["Imported", "ImportedFace", "ImportedSide", "align", "border", "is_whole"]
+__all__ = [
+    "RESERVED",
+    "Imported",
+    "ImportedFace",
+    "ImportedSide",
+    "Placement",
+    "align",
+    "border",
+    "is_whole",
+]
 
 
 class ImportedSide(NamedTuple):
@@ -63,6 +72,27 @@ class ImportedFace:
         return self.surface._data(), self.natural, loops
 
 
+RESERVED = ("info", "origin", "x_axis", "y_axis", "z_axis", "at", "placed", "turned")
+"""Names in the program of a component, which place it."""
+
+Triple = tuple[float, float, float]
+
+
+class Placement(NamedTuple):
+    """A product that is placed in another one."""
+
+    part: str
+    """Name of the product."""
+    name: str
+    """Name of the placed product; unique in the one that it is placed in."""
+    origin: Triple
+    """Its origin."""
+    x_axis: Triple
+    """Direction of its x axis."""
+    y_axis: Triple
+    """Direction of its y axis."""
+
+
 @dataclass
 class Imported:
     """Content of a CAD file."""
@@ -75,6 +105,17 @@ class Imported:
     """The unit of length."""
     remarks: list[str] = field(default_factory=list)
     """Omitted or doubtful content."""
+    parts: dict[str, Imported] = field(default_factory=dict)
+    """The products of the file that are placed in more than one place, by name."""
+    placed: list[Placement] = field(default_factory=list)
+    """The products that are placed in it; their faces are not among its own."""
+    reserved: tuple[str, ...] = ()
+    """Names that none of its objects may have."""
+
+    @property
+    def count(self) -> int:
+        """The number of faces, each of a product once."""
+        return len(self.faces) + sum(part.count for part in self.parts.values())
 
 
 def align(faces: list[ImportedFace]) -> None:

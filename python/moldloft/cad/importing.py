@@ -6,6 +6,7 @@ import contextlib
 import re
 from collections.abc import Mapping
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -16,6 +17,7 @@ from moldloft.cad.apart import read
 from moldloft.cad.divisions import divisions
 from moldloft.cad.faces import Imported, ImportedFace, align
 from moldloft.cad.joining import joins
+from moldloft.cad.placing import components, control, placing_of
 from moldloft.colours import MODEL
 from moldloft.errors import Error, FileError
 from moldloft.shapes.nurbs import Nurbs, _braced, _plain, _wrapped
@@ -25,7 +27,7 @@ if TYPE_CHECKING:
 
     from moldloft.models import Model
 
-__all__ = ["UNITS", "imported", "load_cad", "program"]
+__all__ = ["UNITS", "imported", "load_cad", "program", "programs"]
 
 UNITS = {"m": 1.0, "cm": 0.01, "mm": 0.001, "ft": 0.3048, "in": 0.0254}
 """Units of length in metres."""
@@ -70,16 +72,83 @@ def imported(path: str | os.PathLike[str], *, units: str = "m") -> tuple[str, Mo
     if units not in UNITS:
         raise Error(f"unknown unit `{units}`; expected one of: {', '.join(UNITS)}")
     path = Path(path)
-    if path.suffix.lower() not in ENDINGS:
-        raise Error(f"`{path}` is no CAD file by its ending; expected one of: {', '.join(ENDINGS)}")
-    found = read(path, UNITS[units])
+    found = _read(path, units, parts=False)
     with within_limits(f"cannot read `{path}`"):
-        align(found.faces)
-        if any(face.colour is not None and not _is_own(face.colour) for face in found.faces):
-            found.remarks.append("colours become the nearest of the sixteen of a model")
         # Joins may add remarks.
         text, model = _loadable(found, path.name, units)
     return text, model, found.remarks
+
+
+def programs(
+    path: str | os.PathLike[str], target: str, *, units: str = "m"
+) -> tuple[dict[str, str], list[str]]:
+    """A CAD file as programs by file name, the first with the others as components, and remarks.
+
+    A product of a STEP file that is placed more than once is a program of its own, which a
+    ``Component`` places by its ``origin``, ``x_axis`` and ``y_axis``. Everything else is as in
+    :func:`program`.
+
+    Parameters
+    ----------
+    path
+        A STEP, IGES, 3DM or BREP file.
+    target
+        File name of the first program; the others are named after it and their product.
+    units
+        The unit of length of the model.
+    """
+    path = Path(path)
+    found = _read(path, units, parts=True)
+    stem = re.sub(r'["\\]', "_", Path(target).stem)
+    names = {name: f"{stem}.{name}.sdl" for name in found.parts}
+    texts = {}
+    with within_limits(f"cannot read `{path}`"):
+        for name, part in [(target, found), *found.parts.items()]:
+            text, _ = _loadable(part, path.name, units)
+            texts[names.get(name, target)] = text + components(part, names)
+            if part is not found:
+                found.remarks += [f"{name}: {remark}" for remark in part.remarks]
+        if found.parts:
+            found.remarks += _inward(_whole_model(texts, target))
+    return texts, found.remarks
+
+
+def _read(path: Path, units: str, *, parts: bool) -> Imported:
+    """The content of a file, the sides of common edges aligned."""
+    if units not in UNITS:
+        raise Error(f"unknown unit `{units}`; expected one of: {', '.join(UNITS)}")
+    if path.suffix.lower() not in ENDINGS:
+        raise Error(f"`{path}` is no CAD file by its ending; expected one of: {', '.join(ENDINGS)}")
+    found = read(path, UNITS[units], components=parts)
+    with within_limits(f"cannot read `{path}`"):
+        held = [found, *found.parts.values()]
+        for part in held:
+            align(part.faces)
+        colours = [face.colour for part in held for face in part.faces]
+        if any(colour is not None and not _is_own(colour) for colour in colours):
+            found.remarks.append("colours become the nearest of the sixteen of a model")
+    return found
+
+
+def _whole_model(texts: Mapping[str, str], target: str) -> Model:
+    """The model of a program with its components."""
+    from moldloft.loading import load
+
+    with TemporaryDirectory() as folder:
+        for name, text in texts.items():
+            (Path(folder) / name).write_text(text, encoding="utf-8")
+        return load(Path(folder) / target)
+
+
+def _inward(model: Model) -> list[str]:
+    """A remark on closed panels that face inward."""
+    try:
+        mesh = model.mesh()
+    except Error:
+        return []
+    if mesh.closed and mesh.volume < 0:
+        return ["the panels of the bodies face inward: their volume is negative"]
+    return []
 
 
 _MOST_TRIES = 8
@@ -105,6 +174,7 @@ def _loadable(found: Imported, name: str, units: str) -> tuple[str, Model]:
             missed = _missed_areas(found, model)
             if not missed or any(finer.get(face, 1.0) >= _FINEST for face in missed):
                 found.remarks += [remark for _, remark in missed.values()]
+                found.remarks += _inward(model)
                 return text, model
             for name_of, (share, _) in missed.items():
                 # What a panel misses is as the square of its size.
@@ -196,17 +266,23 @@ def _text(
     apart: frozenset[str],
     finer: Mapping[str, float],
 ) -> str:
-    lines = [f"# {name}", f'Model info(units = "{units}");']
-    taken = {face.name for face in found.faces} | set(found.curves)
+    lines = []
+    taken = {face.name for face in found.faces} | {*found.curves, *found.reserved}
+    moved = bool(found.reserved)
     counts = divisions(found.faces, finer)
     for face in found.faces:
         if face.natural:
-            lines += _whole(face, taken, counts[face.name])
+            lines += _whole(face, taken, counts[face.name], moved)
         else:
-            lines += _trimmed(face, taken)
+            lines += _trimmed(face, taken, moved)
     lines += joins(found, taken, apart)
-    lines += [curve.to_sdl(label) for label, curve in found.curves.items()]
-    return "\n".join(lines) + "\n"
+    for label, curve in found.curves.items():
+        lines.append(curve._statement(label, {}, control(curve, {}, moved)))
+    body = "\n".join(lines) + "\n"
+    head = f'# {name}\nModel info(units = "{units}");\n'
+    if moved:
+        head += placing_of(body, found)
+    return head + body
 
 
 def _attributes(face: ImportedFace) -> str:
@@ -249,35 +325,43 @@ _POLE = 1e-9
 """Size of an edge's control points, relative to the model, below which they are one point."""
 
 
-def _whole(face: ImportedFace, taken: set[str], counts: tuple[int, int]) -> list[str]:
+def _poles(surface: Nurbs) -> list[tuple[Any, Any]]:
+    """The edges that are points: numbers of their control points, and the point."""
+    net = surface.points
+    flat = net.reshape(-1, 3)
+    near = _POLE * float(np.ptp(flat, axis=0).max())
+    numbers = np.arange(len(flat)).reshape(net.shape[:2])
+    edges = numbers[:, 0], numbers[-1], numbers[:, -1], numbers[0]
+    return [(e, flat[e].mean(axis=0)) for e in edges if np.ptp(flat[e], axis=0).max() <= near]
+
+
+def _whole(face: ImportedFace, taken: set[str], counts: tuple[int, int], moved: bool) -> list[str]:
     """A surface; a degenerate edge uses a single point object, which marks the pole for panels."""
-    points = face.surface.points
-    near = _POLE * float(np.ptp(points.reshape(-1, 3), axis=0).max())
-    numbers = np.arange(points.shape[0] * points.shape[1]).reshape(points.shape[:2])
     lines: list[str] = []
     named: dict[int, str] = {}
-    for edge in (numbers[:, 0], numbers[-1], numbers[:, -1], numbers[0]):
-        places = points.reshape(-1, 3)[edge]
-        if np.ptp(places, axis=0).max() > near:
-            continue
+    for edge, place in _poles(face.surface):
         pole = f"{face.name}_pole{len(lines) + 1}"
         while pole in taken:
             pole += "_"
         taken.add(pole)
-        at = ", ".join(map(_plain, places.mean(axis=0)))
+        at = ", ".join(map(_plain, place))
+        if moved:
+            at = ", ".join(f"at({{{at}}}).{axis}" for axis in "xyz")
         lines.append(f"AbsPoint {pole}({at}, visible = 0);")
         named |= dict.fromkeys(edge.tolist(), pole)
-    text = face.surface._statement(face.name, named).removesuffix(");")
+    points = control(face.surface, named, moved)
+    text = face.surface._statement(face.name, named, points).removesuffix(");")
     text += f", divisions = {{{counts[0]}, {counts[1]}}}{_attributes(face)}"
     return [*lines, text]
 
 
-def _trimmed(face: ImportedFace, taken: set[str]) -> list[str]:
+def _trimmed(face: ImportedFace, taken: set[str], moved: bool) -> list[str]:
     base = f"{face.name}_surface"
     while base in taken:
         base += "_"
     taken.add(base)
-    lines = [face.surface.to_sdl(base).replace(");", ", visible = 0);")]
+    text = face.surface._statement(base, {}, control(face.surface, {}, moved))
+    lines = [text.removesuffix(");") + ", visible = 0);"]
     names = []
     for c, cycle in enumerate(face.loops):
         ends = [f"{face.name}_p{c}_{k}" for k in range(len(cycle))]
@@ -290,8 +374,8 @@ def _trimmed(face: ImportedFace, taken: set[str]) -> list[str]:
         for k, (_, backwards, trace, _) in enumerate(cycle):
             own = trace if not backwards else _turned(trace)
             label = f"{face.name}_s{c}_{k}"
-            control = [ends[k], ends[(k + 1) % len(cycle)]]
-            text = f"NURBSnake {label}({_braced(control)}, {own.degrees[0]}, "
+            both = [ends[k], ends[(k + 1) % len(cycle)]]
+            text = f"NURBSnake {label}({_braced(both)}, {own.degrees[0]}, "
             text += _braced(map(_plain, own.knots[0]))
             if own.weights is not None:
                 text += f", weights = {_braced(map(_plain, own.weights))}"

@@ -21,7 +21,15 @@ import numpy as np
 from moldloft import _core
 from moldloft.budget import limits
 from moldloft.cad import identifier, needed
-from moldloft.cad.faces import Imported, ImportedFace, ImportedSide, border, is_whole
+from moldloft.cad.assemblies import NOWHERE, Assemblies, Content, Inside, label_name
+from moldloft.cad.faces import (
+    RESERVED,
+    Imported,
+    ImportedFace,
+    ImportedSide,
+    border,
+    is_whole,
+)
 from moldloft.cad.iges_text import IgesText
 from moldloft.cad.part21 import StepText
 from moldloft.cad.rhino_reading import step_text
@@ -139,33 +147,32 @@ def cad_bytes(path: Path) -> bytes:
     return data.removeprefix(b"\xef\xbb\xbf")
 
 
-def _of_brep(path: Path, data: bytes, metres: float) -> Imported:
-    """The faces and curves of a BREP shape, which is assumed to be in millimetres."""
+def _step_of_brep(path: Path, data: bytes) -> str:
+    """A BREP shape, taken to be in millimetres, as the text of a STEP file.
+
+    Reading it, OCCT mends what a BREP file may have: curves of trims off their edges, and faces
+    that close upon themselves without a seam.
+    """
     from OCP.BRep import BRep_Builder
-    from OCP.BRepBuilderAPI import BRepBuilderAPI_Transform
     from OCP.BRepTools import BRepTools
-    from OCP.gp import gp_Pnt, gp_Trsf
+    from OCP.STEPControl import STEPControl_AsIs, STEPControl_Writer
     from OCP.TopoDS import TopoDS_Shape
-    from OCP.XCAFDoc import XCAFDoc_DocumentTool
 
     shape = TopoDS_Shape()
     BRepTools.Read_s(shape, io.BytesIO(data), BRep_Builder())
     if shape.IsNull():
         raise FileError(f"cannot read `{path}`: not a BREP file that OCCT takes")
-    scale = gp_Trsf()
-    scale.SetScale(gp_Pnt(0, 0, 0), 1e-3 / metres)
-    shape = BRepBuilderAPI_Transform(shape, scale, True).Shape()
-    document = _document(metres)
-    XCAFDoc_DocumentTool.ShapeTool_s(document.Main()).AddShape(shape)
-    found = Imported(metres=metres)
-    found.remarks.append("a BREP file states no unit: its numbers are taken as millimetres")
-    _collect(document, [Sewn(shape)], found, {})
-    if not found.faces and not found.curves:
-        raise FileError(f"cannot read `{path}`: it contains no face and no curve")
-    return found
+    with tempfile.TemporaryDirectory() as folder, _quiet():
+        copy = Path(folder) / "model.step"
+        writer = STEPControl_Writer()
+        writer.Transfer(shape, STEPControl_AsIs)
+        writer.Write(str(copy))
+        return copy.read_text(encoding="latin-1") if copy.exists() else ""
 
 
-def of_part(path: Path, metres: float, numbers: list[int] | None) -> Imported:
+def of_part(
+    path: Path, metres: float, numbers: list[int] | None, *, components: bool = False
+) -> Imported:
     """The faces and curves of a CAD file, read in this process.
 
     ``metres`` is the size of its unit.
@@ -180,6 +187,8 @@ def of_part(path: Path, metres: float, numbers: list[int] | None) -> Imported:
         Unit of length of the result, in metres.
     numbers
         The faces of a STEP file that are wanted, by the numbers of their entities; None for all.
+    components
+        True for products of a STEP file that are placed more than once as parts of their own.
 
     Raises
     ------
@@ -188,25 +197,27 @@ def of_part(path: Path, metres: float, numbers: list[int] | None) -> Imported:
     """
     needed("OCP", "cadquery-ocp-novtk", "reading STEP, IGES and BREP")
     data = cad_bytes(path)
-    if path.suffix.lower() in (".brep", ".brp"):
-        return _of_brep(path, data, metres)
     if not data.strip():
         raise FileError(f"cannot read `{path}`: the file is empty")
     iges = path.suffix.lower() in (".igs", ".iges")
     text, said = data.decode("latin-1"), list[str]()
     if path.suffix.lower() == ".3dm":
         text, said = step_text(path, data)
+    if path.suffix.lower() in (".brep", ".brp"):
+        text = _step_of_brep(path, data)
+        said = ["a BREP file states no unit: its numbers are taken as millimetres"]
     source = IgesText.of(path, text) if iges else StepText.of(path, text)
     source.remarks[:0] = said
     if isinstance(source, StepText) and numbers is not None:
         source = source.only_faces(numbers)
     # OCCT may end the process over an entity that is missing: it gets what needs none.
-    found, done = _held(source.sound() if isinstance(source, StepText) else source, metres)
-    fewer = isinstance(source, StepText) and len(found.faces) < len(source.whole_faces)
+    sound = source.sound() if isinstance(source, StepText) else source
+    found, done = _held(sound, metres, components and numbers is None)
+    fewer = isinstance(source, StepText) and found.count < len(source.whole_faces)
     if isinstance(source, StepText) and fewer and numbers is None:
         # One missing vertex may take a body with it.
-        rest, again = _held(source.only_faces().sound(), metres)
-        if again and len(rest.faces) > len(found.faces):
+        rest, again = _held(source.only_faces().sound(), metres, False)
+        if again and len(rest.faces) > found.count:
             rest.remarks.append(
                 f"the {len(rest.faces)} faces that are whole are kept, their body is not"
             )
@@ -223,37 +234,65 @@ def of_part(path: Path, metres: float, numbers: list[int] | None) -> Imported:
             f"{hollow} of the file's solids have cavities: here the faces round a cavity bound a "
             "body of its own, whose volume is added instead of taken away"
         )
-    if not found.faces and not found.curves:
+    if not found.count and not found.curves:
         why = "".join(f"; {remark}" for remark in source.remarks)
         raise FileError(f"cannot read `{path}`: it contains no face and no curve{why}")
     return found
 
 
-def _held(source: StepText | IgesText, metres: float) -> tuple[Imported, bool]:
+def _held(source: StepText | IgesText, metres: float, components: bool) -> tuple[Imported, bool]:
     """The content that OCCT finds in a file, and True if it is readable."""
     found = Imported(metres=metres, remarks=list(source.remarks))
     document = _document(metres)
     iges = isinstance(source, IgesText)
     done = _transferred(source.text.encode("latin-1"), iges, document)
-    if done:
-        shapes = _free(document)
-        if isinstance(source, IgesText) and shapes:
+    if not done:
+        return found, False
+    named = _Names(document, levels=iges)
+    seen: set[int] = set()
+    shapes = _free(document)
+    if isinstance(source, IgesText):
+        originals = 0
+        if shapes:
             # Faces of IGES do not share their edges.
             whole = Sewn.of(_compound(shapes), source.resolution / metres)
-            _collect(document, [whole], found, source.names)
+            originals = _collect(named, [(whole, NOWHERE)], found, source.names, seen)
             whole.say(found.remarks, iges=True)
-        else:
-            parts = [Sewn(shape) for shape in shapes if not is_sheet(shape)]
-            sheets = [shape for shape in shapes if is_sheet(shape)]
-            # Many programs write the faces of a hull one by one.
-            whole = Sewn.of(_compound(sheets), 0.0)
-            parts += [whole] if whole.found else [Sewn(sheet) for sheet in sheets]
-            _collect(document, parts, found, source.names)
-            if isinstance(source, StepText):
-                _name_curves(found, source.curve_names)
-            if whole.found:
-                whole.say(found.remarks, iges=False)
-    return found, done
+        _say_lost(found, source.names, seen, originals)
+        return found, True
+    tree = Assemblies(document, named.product, _colour, components)
+    if tree.names or tree.coloured:
+        originals = _collect_content(tree.content(), named, found, source.names, seen)
+        for name in tree.names:
+            part = found.parts[name] = Imported(metres=metres, reserved=RESERVED)
+            content = tree.content(name)
+            originals += _collect_content(content, named, part, source.names, seen)
+    else:
+        content = Content([(shape, NOWHERE) for shape in shapes])
+        originals = _collect_content(content, named, found, source.names, seen)
+        _name_curves(found, source.curve_names)
+    _say_lost(found, source.names, seen, originals)
+    return found, True
+
+
+def _collect_content(
+    content: Content, named: _Names, found: Imported, numbered: dict[int, str], seen: set[int]
+) -> int:
+    """The faces and curves of a product or a file; their number before faces were halved."""
+    parts = [(Sewn(shape), inside) for shape, inside in content.shapes if not is_sheet(shape)]
+    sheets = [(shape, inside) for shape, inside in content.shapes if is_sheet(shape)]
+    # Many programs write the faces of a hull one by one.
+    whole = Sewn.of(_compound([shape for shape, _ in sheets]), 0.0)
+    sewn = whole.found and len({inside for _, inside in sheets}) == 1
+    if sewn:
+        parts.append((whole, sheets[0][1]))
+    else:
+        parts += [(Sewn(sheet), inside) for sheet, inside in sheets]
+    count = _collect(named, parts, found, numbered, seen)
+    if sewn:
+        whole.say(found.remarks, iges=False)
+    found.placed += content.placed
+    return count
 
 
 def _name_curves(found: Imported, named: list[tuple[str, int, int]]) -> None:
@@ -276,6 +315,7 @@ def _transferred(data: bytes, iges: bool, document: Any) -> bool:
 
         reader: Any = IGESCAFControl_Reader()
         reader.SetNameMode(True)
+        reader.SetLayerMode(True)
         # This reader takes files only.
         with tempfile.TemporaryDirectory() as folder, _quiet():
             path = Path(folder) / "model.igs"
@@ -288,22 +328,30 @@ def _transferred(data: bytes, iges: bool, document: Any) -> bool:
     reader = STEPCAFControl_Reader()
     Interface_Static.SetIVal_s("read.stepcaf.subshapes.name", 1)
     reader.SetNameMode(True)
+    reader.SetLayerMode(True)
     with _quiet():
         status = reader.ChangeReader().ReadStream("model.step", io.BytesIO(data))
         return str(status).endswith("RetDone") and reader.Transfer(document)
 
 
-def _collect(document: Any, shapes: list[Sewn], found: Imported, numbered: dict[int, str]) -> None:
-    """The faces and curves of a document; faces of STEP files are named by their entity numbers."""
-    named = _Names(document)
-    taken: set[str] = set()
-    seen: set[int] = set()
+def _collect(
+    named: _Names,
+    shapes: list[tuple[Sewn, Inside]],
+    found: Imported,
+    numbered: dict[int, str],
+    seen: set[int],
+) -> int:
+    """The faces and curves of shapes; faces of STEP files are named by their entity numbers.
+
+    The answer is the number of faces before any are halved.
+    """
+    taken = set(found.reserved)
     known = 0
     originals = 0
     bodies: set[str] = set()
-    several = sum(len(_solids(shape.shape)) for shape in shapes) > 1
-    for shape in shapes:
-        places = _Places(shape, named, bodies, several)
+    several = sum(len(_solids(shape.shape)) for shape, _ in shapes) > 1
+    for shape, inside in shapes:
+        places = _Places(shape, named, bodies, several, inside)
         labels = _Labels(named, numbered, taken.copy(), seen, len(found.faces))
         faces, count, left_out = _shape_faces(shape, labels, places, False)
         if any(not face.natural and _own_seam(face) for face in faces):
@@ -328,6 +376,11 @@ def _collect(document: Any, shapes: list[Sewn], found: Imported, numbered: dict[
             curve = _space_curve(edge)
             if curve is not None:
                 found.curves[identifier(label, taken)] = curve
+    return originals
+
+
+def _say_lost(found: Imported, numbered: dict[int, str], seen: set[int], originals: int) -> None:
+    """A remark on the faces of a file that OCCT does not give."""
     lost = [n for n in numbered if n not in seen]
     count = len(numbered) - originals
     if lost and count > 0:
@@ -358,8 +411,7 @@ class _Labels:
         if known:
             self.seen.add(number)
             label = self.numbered[number]
-        # Some programs write NONE for no name.
-        label = f"face{self.count}" if label in ("", "NONE") else label
+        label = f"face{self.count}" if label in _UNNAMED else label
         return label, f"face #{number} (`{label}`)" if known else f"face `{label}`"
 
 
@@ -374,29 +426,40 @@ def _solids(shape: Any) -> list[Any]:
     return faces_of(shape, TopAbs_SOLID)
 
 
-_UNNAMED = {"", "NONE", "SOLID", "SHELL", "COMPOUND", "ASSEMBLY"}
+_UNNAMED = {"", "NONE", "FACE", "SOLID", "SHELL", "COMPOUND", "ASSEMBLY"}
 """Default names of unnamed shapes."""
 
 
 class _Places:
-    """Products and colours of the faces of a shape."""
+    """Products, layers and colours of the faces of a shape."""
 
-    def __init__(self, sewn: Sewn, named: _Names, bodies: set[str], several: bool) -> None:
+    def __init__(
+        self,
+        sewn: Sewn,
+        named: _Names,
+        bodies: set[str],
+        several: bool,
+        inside: Inside,
+    ) -> None:
         from OCP.TopAbs import TopAbs_FACE, TopAbs_SHELL, TopAbs_SOLID
         from OCP.TopoDS import TopoDS_Iterator
 
         self._faces = map_of(sewn.shape, TopAbs_FACE)
         self._found: dict[int, tuple[tuple[str, ...], tuple[float, float, float] | None]] = {}
 
-        def walk(shape: Any, path: tuple[str, ...], colour: Any, body: bool) -> None:
-            colour = named.colour(shape) or colour
+        def walk(
+            shape: Any, path: tuple[str, ...], layers: tuple[str, ...], colour: Any, body: bool
+        ) -> None:
+            # A placement may have a colour in place of its product's.
+            colour = colour if shape is sewn.shape and colour else named.colour(shape) or colour
+            layers = (*layers, *named.layers(shape))
             kind = shape.ShapeType()
             if kind == TopAbs_FACE:
-                self._found.setdefault(self._faces.FindIndex(shape), (path, colour))
+                tags = tuple(dict.fromkeys((*path, *layers)))
+                self._found.setdefault(self._faces.FindIndex(shape), (tags, colour))
                 return
-            label = named.of(shape)
-            plain = label in _UNNAMED or label.startswith("Open CASCADE")
-            known = "" if plain else identifier(label, set())
+            label = named.product(shape)
+            known = identifier(label, set()) if label else ""
             if known and known not in path:
                 path = (*path, known)
             if several and not body and kind in (TopAbs_SOLID, TopAbs_SHELL):
@@ -407,13 +470,13 @@ class _Places:
                 path, body = (*path, name) if name not in path else path, True
             parts = TopoDS_Iterator(shape)
             while parts.More():
-                walk(parts.Value(), path, colour, body)
+                walk(parts.Value(), path, layers, colour, body)
                 parts.Next()
 
-        walk(sewn.shape, (), None, False)
+        walk(sewn.shape, inside.products, (), inside.colour, False)
 
     def of(self, face: Any) -> tuple[tuple[str, ...], tuple[float, float, float] | None]:
-        """Products, body and colour of a face."""
+        """Products, body and layers, and the colour, of a face."""
         return self._found.get(self._faces.FindIndex(face), ((), None))
 
 
@@ -571,12 +634,11 @@ def _loose_edges(shape: Any) -> list[Any]:
 
 
 class _Names:
-    """The names and colours of a document's shapes."""
+    """The names, colours and layers of a document's shapes."""
 
-    def __init__(self, document: Any) -> None:
+    def __init__(self, document: Any, *, levels: bool = False) -> None:
         from OCP.collections import IndexedMap_TopoDS_Shape_TopTools_ShapeMapHasher as Shapes
         from OCP.collections import Sequence_TDF_Label
-        from OCP.TDataStd import TDataStd_Name
         from OCP.TopLoc import TopLoc_Location
         from OCP.XCAFDoc import XCAFDoc_DocumentTool
 
@@ -585,19 +647,24 @@ class _Names:
         self._shapes = Shapes()
         self._names: dict[int, str] = {}
         self._colours: dict[int, tuple[float, float, float]] = {}
+        self._layers: dict[int, tuple[str, ...]] = {}
+        layer_tool = XCAFDoc_DocumentTool.LayerTool_s(document.Main())
 
         def walk(label: Any) -> None:
             shape = tool.GetShape_s(label)
             colour = None if shape.IsNull() else _colour(label)
             if colour is not None:
                 self._colours.setdefault(self._shapes.Add(shape.Located(self._nowhere)), colour)
-            if label.IsAttribute(TDataStd_Name.GetID_s()):
-                name = TDataStd_Name()
-                label.FindAttribute(TDataStd_Name.GetID_s(), name)
-                shape = tool.GetShape_s(label)
-                if not shape.IsNull():
-                    index = self._shapes.Add(shape.Located(self._nowhere))
-                    self._names.setdefault(index, name.Get().ToExtString())
+            layers = () if shape.IsNull() else _layers(layer_tool, label)
+            if levels:
+                # IGES has numbers, 0 for none.
+                layers = tuple(f"level_{number}" for number in layers if number != "0")
+            if layers:
+                self._layers.setdefault(self._shapes.Add(shape.Located(self._nowhere)), layers)
+            name = "" if shape.IsNull() else label_name(label)
+            if name:
+                index = self._shapes.Add(shape.Located(self._nowhere))
+                self._names.setdefault(index, name)
             inner = Sequence_TDF_Label()
             tool.GetSubShapes_s(label, inner)
             for k in range(1, inner.Length() + 1):
@@ -612,9 +679,29 @@ class _Names:
         """The name of a shape or of one that contains it; may be empty."""
         return self._names.get(self._shapes.FindIndex(shape.Located(self._nowhere)), "")
 
+    def product(self, shape: Any) -> str:
+        """The name of a shape; empty for one that a program gives to unnamed shapes."""
+        name = self.of(shape)
+        return "" if name in _UNNAMED or name.startswith("Open CASCADE") else name
+
     def colour(self, shape: Any) -> tuple[float, float, float] | None:
         """The colour of a shape or of one that contains it, sRGB."""
         return self._colours.get(self._shapes.FindIndex(shape.Located(self._nowhere)))
+
+    def layers(self, shape: Any) -> tuple[str, ...]:
+        """The layers that a shape itself is on, as tags."""
+        return self._layers.get(self._shapes.FindIndex(shape.Located(self._nowhere)), ())
+
+
+def _layers(tool: Any, label: Any) -> tuple[str, ...]:
+    """The names of a label's layers as words without blanks."""
+    from OCP.collections import Sequence_TDF_Label
+
+    held = Sequence_TDF_Label()
+    tool.GetLayers(label, held)
+    names = (label_name(held.Value(k)) for k in range(1, held.Length() + 1))
+    words = ("_".join(name.replace('"', " ").split()) for name in names)
+    return tuple(word for word in words if word not in ("", "NONE"))
 
 
 def _colour(label: Any) -> tuple[float, float, float] | None:

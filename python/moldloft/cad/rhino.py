@@ -1,9 +1,7 @@
 """3DM files, by rhino3dm (McNeel, MIT).
 
-Faces with all of their surface are NURBS surfaces; trimmed planes are trimmed B-reps. rhino3dm
-cannot trim other surfaces nor join faces: a trimmed surface is written whole, grouped with its
-trimming curves, and its attributes record this. Joined bodies are exchanged as STEP, which Rhino
-reads.
+A closed shell is one B-rep, with the names and colours of its faces in its attributes. Faces of
+open shells are objects: NURBS surfaces if they have all of their surface, otherwise trimmed B-reps.
 """
 
 from __future__ import annotations
@@ -13,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 from moldloft import _core
 from moldloft.cad import needed
 from moldloft.cad.boundary import Boundary, Face, boundary
+from moldloft.cad.opennurbs import brep
 from moldloft.errors import FormatError
 
 if TYPE_CHECKING:
@@ -53,8 +52,14 @@ def encode(model: Model, stem: str, *, accuracy: float | None = None) -> bytes:
     )
     file.Settings.ModelAbsoluteTolerance = max(1.5 * shape.gap, 1e-9)
     layers: dict[str, int] = {}
-    for face in shape.faces:
-        _face(rhino, file, layers, shape, face)
+    done: set[int] = set()
+    for part in shape.parts:
+        for faces, closed in part.shells:
+            if closed and len(faces) > 1 and _body(rhino, file, layers, shape, part.name, faces):
+                done |= {*faces}
+    for k, face in enumerate(shape.faces):
+        if k not in done:
+            _face(rhino, file, layers, shape, k, face)
     for part in shape.parts:
         for name, colour, curve in part.wires:
             attributes = _attributes(rhino, file, layers, name, colour, ())
@@ -84,31 +89,64 @@ def file_bytes(file: Any) -> bytes:
         return path.read_bytes()
 
 
-def _face(rhino: Any, file: Any, layers: dict[str, int], shape: Boundary, face: Face) -> None:
+def _body(
+    rhino: Any,
+    file: Any,
+    layers: dict[str, int],
+    shape: Boundary,
+    name: str,
+    faces: tuple[int, ...],
+) -> bool:
+    """Adds a closed shell as one B-rep, if the result is one."""
+    held = [shape.faces[k] for k in faces]
+    solid = _decoded(rhino, shape, faces)
+    if solid is None or not solid.IsSolid:
+        return False
+    colours = {face.colour for face in held}
+    colour = held[0].colour if len(colours) == 1 else None
+    attributes = _attributes(rhino, file, layers, name, colour, held[0].layers)
+    error = max(face.error for face in held)
+    exact = all(face.exact for face in held)
+    attributes.SetUserString("accuracy", "exact" if exact else f"{error:.3g}")
+    attributes.SetUserString("faces", "\n".join(face.name for face in held))
+    if len(colours) > 1:
+        words = (bytes(face.colour).hex() if face.colour else "" for face in held)
+        attributes.SetUserString("colours", "\n".join(words))
+    file.Objects.AddBrep(solid, attributes)
+    return True
+
+
+def _decoded(rhino: Any, shape: Boundary, faces: tuple[int, ...]) -> Any:
+    """Faces as a B-rep that openNURBS finds valid; None if there is none."""
+    try:
+        made = rhino.CommonObject.Decode(brep(shape, faces))
+    except FormatError:
+        # Some edges have no curve in the parameters of their faces.
+        return None
+    return made if made is not None and made.IsValid else None
+
+
+def _face(
+    rhino: Any, file: Any, layers: dict[str, int], shape: Boundary, number: int, face: Face
+) -> None:
     attributes = _attributes(rhino, file, layers, face.name, face.colour, face.layers)
     attributes.SetUserString("accuracy", "exact" if face.exact else f"{face.error:.3g}")
-    if face.surface is None:
-        # One curve for each loop: the plane is trimmed by them.
-        curves = [_loop(rhino, shape, cycle) for cycle in face.loops]
-        outer = rhino.Brep.CreateTrimmedPlane(_plane(rhino, face), curves[0])
-        if outer is not None and len(curves) == 1:
-            file.Objects.AddBrep(outer, attributes)
-            return
-        for curve in curves:
-            file.Objects.AddCurve(curve, attributes)
+    if face.surface is not None and face.natural:
+        file.Objects.AddSurface(_surface(rhino, face.surface), attributes)
         return
-    surface = _surface(rhino, face.surface)
-    if not face.natural:
+    trimmed = _decoded(rhino, shape, (number,))
+    if trimmed is not None:
+        file.Objects.AddBrep(trimmed, attributes)
+        return
+    if face.surface is not None:
         attributes.SetUserString("trimmed", "the curves of its group bound the face")
         group = rhino.Group()
         group.Name = face.name
         file.Groups.Add(group)
-        index = len(file.Groups) - 1
-        attributes.AddToGroup(index)
-        for cycle in face.loops:
-            for side in cycle:
-                file.Objects.AddCurve(_curve(rhino, shape.edges[side.edge].curve), attributes)
-    file.Objects.AddSurface(surface, attributes)
+        attributes.AddToGroup(len(file.Groups) - 1)
+        file.Objects.AddSurface(_surface(rhino, face.surface), attributes)
+    for side in (side for cycle in face.loops for side in cycle):
+        file.Objects.AddCurve(_curve(rhino, shape.edges[side.edge].curve), attributes)
 
 
 def _attributes(
@@ -133,12 +171,6 @@ def _attributes(
     return attributes
 
 
-def _plane(rhino: Any, face: Face) -> Any:
-    assert face.plane is not None
-    origin, normal, _ = face.plane
-    return rhino.Plane(rhino.Point3d(*origin), rhino.Vector3d(*normal))
-
-
 def _curve(rhino: Any, curve: Nurbs) -> Any:
     count = len(curve.points)
     made = rhino.NurbsCurve(3, curve.weights is not None, curve.degrees[0] + 1, count)
@@ -149,16 +181,6 @@ def _curve(rhino: Any, curve: Nurbs) -> Any:
     for k, knot in enumerate(curve.knots[0][1:-1]):
         made.Knots[k] = float(knot)
     return made
-
-
-def _loop(rhino: Any, shape: Boundary, cycle: Any) -> Any:
-    joined = rhino.PolyCurve()
-    for side in cycle:
-        curve = _curve(rhino, shape.edges[side.edge].curve)
-        if not side.forward:
-            curve.Reverse()
-        joined.Append(curve)
-    return joined
 
 
 def _surface(rhino: Any, surface: Nurbs) -> Any:

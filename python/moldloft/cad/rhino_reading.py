@@ -9,6 +9,7 @@ instances of a block become copies, each at its position.
 from __future__ import annotations
 
 import contextlib
+import re
 import tempfile
 from collections import Counter
 from collections.abc import Iterator
@@ -244,8 +245,12 @@ class _StepText:
             )
         self._move = np.linalg.multi_dot([np.eye(4), np.eye(4), *map(_matrix, moves)])
         name = str(attributes.Name or "")
+        # What our own files have, in the order of the faces.
+        labels, colours = (
+            str(attributes.GetUserString(key) or "").split("\n") for key in ("faces", "colours")
+        )
         try:
-            items = list(self._items(geometry, name))
+            items = list(self._items(geometry, name, labels, colours))
         except ValueError as error:
             self.remarks.append(f"`{name or 'an object'}` is left out: {error}")
             return
@@ -279,7 +284,9 @@ class _StepText:
             f"MECHANICAL_DESIGN_GEOMETRIC_PRESENTATION_REPRESENTATION('',(#{made}),#{self._context})"
         )
 
-    def _items(self, geometry: Any, name: str) -> Iterator[int]:
+    def _items(
+        self, geometry: Any, name: str, labels: list[str], colours: list[str]
+    ) -> Iterator[int]:
         """The representation items of an object."""
         rhino = self._rhino
         if isinstance(geometry, rhino.Curve):
@@ -294,9 +301,14 @@ class _StepText:
             kind = type(geometry).__name__
             self._left[_APART.get(kind, "annotations, lights and the like")] += 1
             return
-        faces = self._faces(brep, name)
+        faces = self._faces(brep, name, labels)
         if not faces:
             return
+        if len(colours) == len(faces) == len(brep.Faces):
+            for made, colour in zip(faces, colours, strict=True):
+                if re.fullmatch("[0-9a-f]{6}", colour):
+                    red, green, blue = bytes.fromhex(colour)
+                    self._style(made, (red, green, blue))
         several = self._several(faces)
         if brep.IsSolid:
             shell = self.add(f"CLOSED_SHELL({_text(name)},{several})")
@@ -305,7 +317,7 @@ class _StepText:
             shell = self.add(f"OPEN_SHELL({_text(name)},{several})")
             yield self.add(f"SHELL_BASED_SURFACE_MODEL({_text(name)},(#{shell}))")
 
-    def _faces(self, brep: Any, name: str) -> list[int]:
+    def _faces(self, brep: Any, name: str, labels: list[str]) -> list[int]:
         rhino = self._rhino
         ends: dict[int, tuple[int, int]] = {}
         loops: list[list[tuple[bool, list[Any]]]] = []
@@ -356,6 +368,7 @@ class _StepText:
                 kind = "FACE_OUTER_BOUND" if outer else "FACE_BOUND"
                 bounds.append(self.add(f"{kind}('',#{loop},{_flag(along)})"))
             label = name if len(loops) == 1 or not name else f"{name}_{k + 1}"
+            label = labels[k] if len(labels) == len(loops) > 1 else label
             made.append(
                 self.add(
                     f"ADVANCED_FACE({_text(label)},{self._several(bounds)},"

@@ -114,6 +114,11 @@ def _from_cad(options: argparse.Namespace, target: Path | None, form: str) -> in
         from moldloft.overlays.reading import program
 
         text, remarks = program(options.model, units=options.model_units or "m")
+        texts = {target.name if target else "": text}
+    elif form == "sdl" and target is not None:
+        from moldloft.cad.importing import programs
+
+        texts, remarks = programs(options.model, target.name, units=options.model_units or "m")
     else:
         from moldloft.cad.importing import imported
 
@@ -124,7 +129,7 @@ def _from_cad(options: argparse.Namespace, target: Path | None, form: str) -> in
         if target is None:
             put_text(text)
         else:
-            commit(target.parent, [Output(target.name, text.encode())])
+            commit(target.parent, [Output(name, t.encode()) for name, t in texts.items()])
         return 0
     if target is None:
         raise Error(f"name the {form} file with -o")

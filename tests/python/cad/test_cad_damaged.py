@@ -9,6 +9,7 @@ import re
 import subprocess
 import sys
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -274,11 +275,11 @@ def test_a_face_that_ends_the_reader_is_left_out(
     bad = 0
     asked = apart._asked
 
-    def ends(path: Path, metres: float, numbers: list[int] | None, spending: object) -> object:
+    def ends(path: Path, metres: float, numbers: list[int] | None, *rest: Any) -> object:
         nonlocal bad
         if numbers is None or bad in numbers:
             return "OCCT ended over the file (SIGSEGV)"
-        return asked(path, metres, numbers, spending)
+        return asked(path, metres, numbers, *rest)
 
     bad = int(entity(path.read_text(), "ADVANCED_FACE", 2)[0][1:])
     monkeypatch.setattr(apart, "_asked", ends)
