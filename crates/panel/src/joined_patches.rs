@@ -28,6 +28,8 @@ pub(crate) struct JoinedPatches {
     /// Panel edges with one panel: patch and the indices of both ends in its grid.
     pub free_edges: Vec<FreeEdge>,
     pub orientation: Orientation,
+    /// For each patch, true if trimmed faces close its body, which is turned round thereby.
+    turned_with_body: Vec<bool>,
     /// For each patch, true if its panels are opposite to its natural normal.
     pub turned: Vec<bool>,
 }
@@ -69,11 +71,27 @@ impl JoinedPatches {
         let topology = Arc::default();
         let orientation = Orientation::new(structure, &vertices, &free_edges);
         let turned = orientation.turned(structure, points, &free_edges);
-        let mut made = Self { topology, vertices, count, fixed, free_edges, orientation, turned };
+        let turned_with_body = vec![false; structure.patches.len()];
+        let mut made = Self {
+            topology,
+            vertices,
+            count,
+            fixed,
+            free_edges,
+            orientation,
+            turned_with_body,
+            turned,
+        };
+        made.topology = made.numbered(structure, used as usize)?;
+        Ok(made)
+    }
+
+    /// The panels of all patches.
+    fn numbered(&self, structure: &PanelTopology, used: usize) -> Result<Arc<Topology>, MeshError> {
         let mut builder = TopologyBuilder::new();
-        builder.add_vertices(used as usize)?;
+        builder.add_vertices(used)?;
         for (patch, frame) in structure.patches.iter().enumerate() {
-            let vertices = &made.vertices[patch];
+            let vertices = &self.vertices[patch];
             if !frame.meshed {
                 continue;
             }
@@ -85,14 +103,35 @@ impl JoinedPatches {
                 colour: Some((frame.colour & 15) as u8),
                 kind: frame.kind.to_string(),
             };
-            builder.add_block(info, nu + 1, nv + 1, vertices.clone(), made.turned[patch])?;
+            builder.add_block(info, nu + 1, nv + 1, vertices.clone(), self.turned[patch])?;
         }
-        made.topology = builder.build().into();
+        Ok(builder.build().into())
+    }
+
+    /// The same with some patches turned round, with the bodies that trimmed faces close.
+    pub fn turned_round(
+        &self,
+        structure: &PanelTopology,
+        round: &[bool],
+    ) -> Result<Self, MeshError> {
+        let both = |all: &[bool]| all.iter().zip(round).map(|(a, b)| a != b).collect();
+        let mut made = Self {
+            topology: Arc::default(),
+            vertices: self.vertices.clone(),
+            count: self.count,
+            fixed: self.fixed.clone(),
+            free_edges: self.free_edges.clone(),
+            orientation: self.orientation.clone(),
+            turned_with_body: both(&self.turned_with_body),
+            turned: both(&self.turned),
+        };
+        made.topology = made.numbered(structure, self.topology.vertex_count())?;
         Ok(made)
     }
 
     pub fn orientation(&self, structure: &PanelTopology, points: &[Arc<Vec<Vec3>>]) -> Vec<bool> {
-        self.orientation.turned(structure, points, &self.free_edges)
+        let turned = self.orientation.turned(structure, points, &self.free_edges);
+        turned.iter().zip(&self.turned_with_body).map(|(a, b)| a != b).collect()
     }
 
     /// The pairs of patches whose shared vertices do not coincide.

@@ -25,6 +25,7 @@ mod knuckles;
 mod notes;
 mod orientation;
 mod outlines;
+mod outward;
 mod panelling;
 mod patch_values;
 #[cfg(not(target_family = "wasm"))]

@@ -15,7 +15,7 @@ const IN_PLANE: f64 = 1e-9;
 const NEARLY_FLAT: f64 = 0.05;
 
 /// Relative volume of closed bodies, whose cones are their volume: a thin shell has little of it, but has one.
-const NO_VOLUME: f64 = 1e-9;
+pub(crate) const NO_VOLUME: f64 = 1e-9;
 
 /// A panel edge with one panel: the patch and the indices of both ends in its grid.
 pub(crate) type FreeEdge = (u32, u32, u32);
@@ -97,6 +97,11 @@ impl Orientation {
             volume < -flat * size
         };
         (0..patches.len()).map(|patch| stated(patch) != inward(patch)).collect()
+    }
+
+    /// True for a patch of a body without a rim.
+    pub fn is_closed(&self, patch: usize) -> bool {
+        self.closed[self.sides[patch].0]
     }
 
     fn body(&self, patch: usize) -> usize {

@@ -16,13 +16,14 @@ use crate::identity::Identities;
 use crate::joined_patches::JoinedPatches;
 use crate::knuckles::is_creased;
 use crate::notes::PanelNote;
+use crate::outward::{Member, faces_inward};
 use crate::patch_values::{PatchValues, evaluated_all, names};
 use crate::roots::RootTable;
 use crate::topology::{self, Counts, EdgeRun, Nominal, PanelTopology, PatchTopology};
 use crate::triangle_bodies::{self, MeshedBody};
 use moldloft_budget::Spent;
 use moldloft_hydro::{USUAL_ACCURACY, surface_measures};
-use moldloft_mesh::{Mesh, Panel, Topology};
+use moldloft_mesh::{Mesh, MeshError, Panel, Topology};
 use moldloft_model::{Graph, Object};
 use moldloft_num::trace::Key;
 use moldloft_num::{Box3, Fineness, Order, Real, Vec3};
@@ -257,7 +258,7 @@ impl Panelling {
             remarks.extend(triangle_bodies::sewn(&mut bodies, &known, &joined, earlier));
         }
         let topology = topology_after(before, &joined, &bodies)?;
-        Ok(Self {
+        let made = Self {
             structure,
             joined,
             bodies: Arc::new(bodies),
@@ -270,7 +271,51 @@ impl Panelling {
             measured: made.measured,
             knuckles,
             clock: graph.last_change(),
-        })
+        };
+        made.facing_outward(graph)
+    }
+
+    /// The same with closed bodies of whole and trimmed faces turned outward.
+    fn facing_outward(mut self, graph: &Graph<f64>) -> Result<Self, CallError> {
+        let frames = self.structure.patches.iter().enumerate().filter(|(_, frame)| frame.meshed);
+        let frames: Vec<usize> = frames.map(|(patch, _)| patch).collect();
+        let is_open = |&patch: &usize| !self.joined.orientation.is_closed(patch);
+        if !self.bodies.iter().any(MeshedBody::is_sewn) || !frames.iter().any(is_open) {
+            return Ok(self);
+        }
+        let Some(own) = self.body_points(graph, &self.points) else { return Ok(self) };
+        let positions = self.gathered(&self.points, &own);
+        let patches = self.topology.patches();
+        let whole = frames.iter().zip(patches).map(|(patch, at)| Member {
+            faces: at.faces.clone(),
+            counts: is_open(patch),
+            whole: true,
+        });
+        let mut next = frames.len();
+        let trimmed = self.bodies.iter().map(|body| {
+            let first = next;
+            next += body.facets.groups.len().max(1);
+            let faces = patches[first].faces.start..patches[next - 1].faces.end;
+            Member { faces, counts: body.is_sewn(), whole: false }
+        });
+        let members: Vec<Member> = whole.chain(trimmed).collect();
+        let inward = faces_inward(&self.topology, &positions, &members);
+        if !inward.contains(&true) {
+            return Ok(self);
+        }
+        let mut round = vec![false; self.structure.patches.len()];
+        frames.iter().zip(&inward).for_each(|(patch, inward)| round[*patch] = *inward);
+        let mut bodies = self.bodies.to_vec();
+        for (body, inward) in bodies.iter_mut().zip(&inward[frames.len()..]) {
+            body.reversed ^= inward;
+        }
+        let too_many = |e: MeshError| CallError::new("too-many-panels", e.to_string());
+        let joined = self.joined.turned_round(&self.structure, &round).map_err(too_many)?;
+        self.joined = Arc::new(joined);
+        self.topology =
+            triangle_bodies::with_bodies(&self.joined.topology, &bodies).map_err(too_many)?;
+        self.bodies = Arc::new(bodies);
+        Ok(self)
     }
 
     /// The connectivity.

@@ -176,6 +176,11 @@ impl MeshedBody {
         self.facets.border.is_some()
     }
 
+    /// True when its border is divided like that of its neighbours.
+    pub fn is_sewn(&self) -> bool {
+        !self.border_curves.is_empty()
+    }
+
     /// The note of a body whose triangles miss its measures and that has no border to be divided by.
     pub fn undivided(&self) -> Option<PanelNote> {
         let body = &self.facets;
