@@ -267,7 +267,7 @@ impl<T: Real> SurfaceDivision<T> {
             None if self.pieces > 0 => {
                 let of = self.pieces;
                 let row = move |u: [T; 2]| {
-                    let piece = move |at: usize| Some(Piece { at, of });
+                    let piece = move |at: usize| Some(FramePiece { at, of });
                     let ends = [u[0], u[1], T::zero(), T::one()];
                     (0..of).map(move |at| CellFrame { chart: None, piece: piece(at), ends })
                 };
@@ -321,7 +321,7 @@ enum CellFits<'a, T, C> {
 
 /// One of the pieces between joints across u.
 #[derive(Clone, Copy)]
-struct Piece {
+struct FramePiece {
     at: usize,
     of: usize,
 }
@@ -330,7 +330,7 @@ struct Piece {
 #[derive(Clone, Copy)]
 pub(crate) struct CellFrame<'a, T> {
     chart: Option<&'a Chart<T>>,
-    piece: Option<Piece>,
+    piece: Option<FramePiece>,
     /// Minimum and maximum of u, minimum and maximum of v, which is relative to the width of a piece.
     ends: [T; 4],
 }
@@ -408,7 +408,7 @@ impl<T: Real> CellFrame<'_, T> {
     pub fn border(&self) -> [bool; 4] {
         let [u0, u1, v0, v1] = self.ends.map(|t| t.re());
         let ends = [v0 == 0.0, u1 == 1.0, v1 == 1.0, u0 == 0.0];
-        let of_piece = |Piece { at, of }: Piece| [at == 0, true, at + 1 == of, true];
+        let of_piece = |FramePiece { at, of }: FramePiece| [at == 0, true, at + 1 == of, true];
         match (self.chart, self.piece.map(of_piece)) {
             (Some(chart), _) => std::array::from_fn(|k| ends[k] && chart.border[k]),
             (None, Some(reached)) => std::array::from_fn(|k| ends[k] && reached[k]),

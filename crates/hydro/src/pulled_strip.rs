@@ -17,9 +17,9 @@ pub(crate) struct PulledStrip {
 }
 
 /// The Bernstein polynomials of a degree at a parameter, their first and second derivatives.
-struct Bases([Row<f64>; 3]);
+struct StripBases([Row<f64>; 3]);
 
-impl Bases {
+impl StripBases {
     fn new(degree: usize, t: f64) -> Self {
         let (values, slopes) = basis(degree, t);
         let mut bends = Row::default();
@@ -54,7 +54,7 @@ struct CutLine {
     /// The outer parameter's step.
     dw: f64,
     /// The inner parameter of the cut with its basis, and true if it moves with the line.
-    cut: Option<(Bases, bool)>,
+    cut: Option<(StripBases, bool)>,
 }
 
 /// Weights of a line.
@@ -83,16 +83,16 @@ pub(crate) fn pulled_strip(
     let length = strip.to - strip.from;
     // Of whole lines the nodes are the same on each.
     let nodes = gauss_rule(along);
-    let whole: Vec<Bases> = match strip.is_cut() {
+    let whole: Vec<StripBases> = match strip.is_cut() {
         true => Vec::new(),
-        false => nodes.iter().map(|&(s, _)| Bases::new(inner, s)).collect(),
+        false => nodes.iter().map(|&(s, _)| StripBases::new(inner, s)).collect(),
     };
     let mut line = StripLine::default();
     for &(s, weight) in gauss_rule(across) {
         let (share, slope) = outer_share(strip, s);
         let (w, dw) = (strip.from + length * share, length * (slope * weight));
         strip.line(w, &mut line);
-        let across = Bases::new(outer, w);
+        let across = StripBases::new(outer, w);
         let bend = (0..=inner).map(|k| {
             let row = (0..=outer).map(|m| cell.net()[k * stride + m * step] * across.0[2][m]);
             row.fold(Vec3::zero(), |sum, p| sum + p)
@@ -104,9 +104,9 @@ pub(crate) fn pulled_strip(
             (Wet::After, Some(root)) => [root, 1.0],
             _ => [0.0, 1.0],
         };
-        let moved: Vec<Bases> = match root {
+        let moved: Vec<StripBases> = match root {
             Some(_) => {
-                nodes.iter().map(|&(s, _)| Bases::new(inner, low + (high - low) * s)).collect()
+                nodes.iter().map(|&(s, _)| StripBases::new(inner, low + (high - low) * s)).collect()
             }
             None => Vec::new(),
         };
@@ -137,12 +137,12 @@ fn cut_of(
     line: &StripLine<f64>,
     cut: CoordinatePlane<f64>,
     inner: usize,
-) -> (Option<f64>, Option<(Bases, bool)>) {
+) -> (Option<f64>, Option<(StripBases, bool)>) {
     if !strip.is_cut() {
         return (None, None);
     }
     let root = strip.cut_on(line, cut).t;
-    let bases = Bases::new(inner, root);
+    let bases = StripBases::new(inner, root);
     let off = (bases.sum(&line.at, 0)[cut.axis] - cut.level) / bases.sum(&line.at, 1)[cut.axis];
     (Some(root), Some((bases, off.is_finite() && off.abs() < 1e-6)))
 }
@@ -154,7 +154,7 @@ impl CutLine {
         strip: &Strip<f64>,
         origin: Vec3,
         sums: &HydrostaticIntegrals<f64>,
-        bases: &[Bases],
+        bases: &[StripBases],
         nodes: &[(f64, f64)],
         reach: f64,
     ) -> PulledLine {
@@ -197,7 +197,7 @@ impl CutLine {
         strip: &Strip<f64>,
         origin: Vec3,
         sums: &HydrostaticIntegrals<f64>,
-        bases: &Bases,
+        bases: &StripBases,
         moves: bool,
         pulled: &mut PulledLine,
     ) {

@@ -7,7 +7,7 @@ use moldloft_num::union_find::UnionFind;
 use std::ops::Range;
 
 /// A patch, or the patches of one body, by its faces in the mesh.
-pub(crate) struct Member {
+pub(crate) struct SewnPart {
     pub faces: Range<usize>,
     /// False for one whose outside is known.
     pub counts: bool,
@@ -19,7 +19,7 @@ pub(crate) struct Member {
 pub(crate) fn faces_inward(
     topology: &Topology,
     positions: &[Vec3],
-    members: &[Member],
+    members: &[SewnPart],
 ) -> Vec<bool> {
     let mut edges: Vec<((u32, u32), usize, bool)> = Vec::new();
     let counted = members.iter().enumerate().filter(|(_, member)| member.counts);

@@ -16,7 +16,7 @@ use crate::identity::Identities;
 use crate::joined_patches::JoinedPatches;
 use crate::knuckles::is_creased;
 use crate::notes::PanelNote;
-use crate::outward::{Member, faces_inward};
+use crate::outward::{SewnPart, faces_inward};
 use crate::patch_values::{PatchValues, evaluated_all, names};
 use crate::roots::RootTable;
 use crate::topology::{self, Counts, EdgeRun, Nominal, PanelTopology, PatchTopology};
@@ -286,7 +286,7 @@ impl Panelling {
         let Some(own) = self.body_points(graph, &self.points) else { return Ok(self) };
         let positions = self.gathered(&self.points, &own);
         let patches = self.topology.patches();
-        let whole = frames.iter().zip(patches).map(|(patch, at)| Member {
+        let whole = frames.iter().zip(patches).map(|(patch, at)| SewnPart {
             faces: at.faces.clone(),
             counts: is_open(patch),
             whole: true,
@@ -296,9 +296,9 @@ impl Panelling {
             let first = next;
             next += body.facets.groups.len().max(1);
             let faces = patches[first].faces.start..patches[next - 1].faces.end;
-            Member { faces, counts: body.is_sewn(), whole: false }
+            SewnPart { faces, counts: body.is_sewn(), whole: false }
         });
-        let members: Vec<Member> = whole.chain(trimmed).collect();
+        let members: Vec<SewnPart> = whole.chain(trimmed).collect();
         let inward = faces_inward(&self.topology, &positions, &members);
         if !inward.contains(&true) {
             return Ok(self);
