@@ -13,7 +13,7 @@ use crate::pieces::{CurvePiece, ball, size_of};
 use crate::report::{FoundRoot, LocateReport, Roots, Solution};
 use crate::roots::{RootCollector, TANGENT, from_all, taken};
 use crate::tree::CurveTree;
-use moldloft_num::{Box3, Curve, Order, Vec3};
+use moldloft_num::{Box3, Curve, CurveJet, Order, Vec3};
 
 /// Distance, relative to the size, below which curves intersect: curves in space that are
 /// constructed to intersect do so to rounding only.
@@ -132,13 +132,23 @@ fn verdict(p: &CurvePiece, q: &CurvePiece) -> PairVerdict {
     if one { PairVerdict::One } else { PairVerdict::Unknown }
 }
 
+/// A curve at the parameter `t` of a cell, with the derivatives of its inner side: at a joint a curve has those of what follows.
+fn within(curve: &dyn Curve<f64>, t: f64, [_, end]: [f64; 2]) -> CurveJet<f64> {
+    if t < end || end >= 1.0 {
+        return curve.jet(t, Order::Second);
+    }
+    let [_, d, dd] = curve.jet(end.next_down(), Order::Second);
+    [curve.jet(t, Order::Zero)[0], d, dd]
+}
+
 /// Half the square of the distance, its slopes and its second derivatives.
 fn square(
     a: &dyn Curve<f64>,
     b: &dyn Curve<f64>,
     [t, s]: [f64; 2],
+    cell: [[f64; 2]; 2],
 ) -> (f64, [f64; 2], [f64; 3], [f64; 2]) {
-    let (x, y) = (a.jet(t, Order::Second), b.jet(s, Order::Second));
+    let (x, y) = (within(a, t, cell[0]), within(b, s, cell[1]));
     let r = x[0] - y[0];
     let plain = [x[1].norm_sq(), y[1].norm_sq()];
     let second = [plain[0] + x[2].dot(r), -x[1].dot(y[1]), plain[1] - y[2].dot(r)];
@@ -155,7 +165,7 @@ fn descend(
     cell: [[f64; 2]; 2],
 ) -> LeastPlace {
     let mut at = start;
-    let (mut value, mut slope, mut second, mut plain) = square(a, b, at);
+    let (mut value, mut slope, mut second, mut plain) = square(a, b, at, cell);
     let mut steps = 0;
     while steps < MOST_STEPS {
         let out = |k: usize| {
@@ -171,7 +181,7 @@ fn descend(
             if next == at {
                 break;
             }
-            let there = square(a, b, next);
+            let there = square(a, b, next, cell);
             if there.0 < value {
                 at = next;
                 (value, slope, second, plain) = there;
