@@ -455,26 +455,20 @@ fn fitted_cells<'a, T: Real, C: Real>(
     limits: FitLimits,
     fit: CellFit<'_, T, C>,
 ) -> CellFits<'a, T, C> {
+    let mut stack: Vec<(CellFrame<'a, T>, [u32; 2])> =
+        frames.iter().rev().map(|frame| (*frame, [0, 0])).collect();
     let slopes_count = T::PARTS > 1 && limits.relative.is_finite();
     let most = if slopes_count { MOST_CELLS_FOR_SLOPES } else { MOST_CELLS };
     let most = most.max(2 * frames.len());
-    let mut stack = Vec::with_capacity(frames.len());
-    let mut whole = 0.0;
-    for frame in frames.iter().rev() {
-        let Some(fitted) = fit(frame) else { return CellFits::NotFinite };
-        let [length_u, length_v] = fitted.0.lengths();
-        whole += length_u * length_v;
-        stack.push((*frame, [0, 0], fitted));
-    }
     let mut cells = Vec::new();
-    while let Some((frame, depth, (fitted, slopes))) = stack.pop() {
+    while let Some((frame, depth)) = stack.pop() {
+        let Some((fitted, slopes)) = fit(&frame) else {
+            return CellFits::NotFinite;
+        };
         let [length_u, length_v] = fitted.lengths();
         // Points are not more accurate than their rounding.
         let size = fitted.net.iter().fold(0.0f64, |m, p| m.max(p.re().norm()));
         let distance = limits.distance.max(4e-14 * size);
-        // A derivative matters by the part of the surface on which it is.
-        let share = (length_u * length_v / whole).min(1.0);
-        let slopes = if whole > 0.0 { slopes.map(|slope| slope * share) } else { slopes };
         let negligible = |k: usize, across: f64| {
             let tail = fitted.fit[k];
             (tail <= distance || tail * across.max(tail) <= limits.area)
@@ -492,10 +486,8 @@ fn fitted_cells<'a, T: Real, C: Real>(
             let mut deeper = depth;
             deeper[along] += 1;
             let [low, high] = frame.halves(along);
-            for half in [high, low] {
-                let Some(fitted) = fit(&half) else { return CellFits::NotFinite };
-                stack.push((half, deeper, fitted));
-            }
+            stack.push((high, deeper));
+            stack.push((low, deeper));
         } else {
             cells.push((frame, fitted));
         }
