@@ -21,6 +21,9 @@ const SHARE: f64 = 1e-2;
 /// Relative error at which rounding exceeds the gain of finer rules.
 const FINEST: f64 = 1e-11;
 
+/// Rounding error of a coordinate, in units of the rounding of the largest one.
+const COORDINATE_ROUNDINGS: f64 = 2.0;
+
 /// Tolerance of rims in a plane, relative to the size of the body: far above rounding, far below a
 /// panel.
 const SAME_PLACE: f64 = 1e-9;
@@ -305,16 +308,15 @@ impl<T: Real> Body<T> {
         immersed(&self.cells, level, origin, self.size, accuracy, wanted)
     }
 
-    /// Errors due to the distance between cells and surfaces: of volume, its first moments, area,
-    /// and of the waterplane's area, first and second moments.
+    /// Errors due to the distance between cells and surfaces, rounding of coordinates included: of
+    /// volume, its first moments, area, and of the waterplane's area, first and second moments.
     pub(crate) fn fit_errors(&self, bounds: &Box3) -> [f64; 6] {
         let reach = bounds.diagonal();
+        let far = bounds.centre().norm() + 0.5 * reach;
+        let rounding = COORDINATE_ROUNDINGS * f64::EPSILON * far;
         let mut errors = [0.0; 6];
         for cell in &self.cells {
-            let [fit_u, fit_v] = cell.fit;
-            if fit_u + fit_v == 0.0 {
-                continue;
-            }
+            let [fit_u, fit_v] = cell.fit.map(|fit| fit + rounding);
             let [u, v] = cell.lengths();
             // Derivatives of the remainder, of degree 10, over the lengths across.
             let strip = fit_u * v.max(fit_u) + fit_v * u.max(fit_v);

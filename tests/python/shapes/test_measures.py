@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import math
+from fractions import Fraction
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 import moldloft
+from boxes import box
 from conftest import SAILBOAT
 
 # The hull of Table 2, with its transom and a deck straight athwart.
@@ -272,3 +274,24 @@ def test_a_model_that_shows_both_sides_is_refused(cli, tmp_path):
 def test_bad_requests(hull, call, words):
     with pytest.raises(moldloft.Error, match=words):
         hull.hydrostatics(**call)
+
+
+@pytest.mark.parametrize("count", [1, 4])
+def test_bounds_of_boxes_include_the_rounding_of_coordinates(count):
+    # Decimals, of which the products are exact in fractions; the union of those in a row.
+    rng = np.random.default_rng(count)
+    for _ in range(20):
+        low = [
+            Fraction(round(float(x), 3)) for x in rng.uniform(-1, 1, 3) * 10 ** rng.uniform(-1, 3)
+        ]
+        start, volume, text = low[0], Fraction(0), []
+        for k in range(count):
+            size = [Fraction(str(round(float(x), 2))) for x in rng.uniform(0.1, 5, 3)]
+            corner = [start, *low[1:]]
+            text.append(box(k, [float(x) for x in corner], [float(x) for x in size]))
+            volume += math.prod(size)
+            start += size[0]
+        body = moldloft.loads("\n".join(text))
+        found = (body.united() if count > 1 else body).hydrostatics(level=float(low[2]) + 6)
+        off = abs(Fraction(found.volume) - volume)
+        assert off <= found.bounds["volume"] <= 1e-9 * (1 + abs(float(low[0])))
