@@ -3,11 +3,12 @@
 import { shown } from './dom'
 import { type Editor, fileName } from './editor'
 import type { FileTabs } from './file_tabs'
-import type { Hands } from './hands'
+import type { Hands, Written } from './hands'
 import type { Held } from './history'
 import type { Host } from './host'
 import { type Given, type Link, Newest, Refused, type RequestKind, type RequestOf } from './link'
 import type { Preview } from './preview'
+import type { BesideFact } from './protocol'
 import { model } from './state'
 
 /** A hand that has not moved for this long rests, in ms. */
@@ -81,18 +82,34 @@ export class Changes {
       await this.editor.synced()
       await this.setting.settled()
       const { head } = await this.link.ask(kind, ...([fields] as Given<K>))
-      const now = (head.kept ?? []).map((n: string) => ({
+      await this.written(head, name)
+    })
+  }
+
+  /** Takes in what the engine wrote, as one step of the history; values that no open text states hold for this session. */
+  async written(head: Written, name: string): Promise<void> {
+    const stated: [Editor, BesideFact[]][] = []
+    for (const file of new Set((head.beside ?? []).map((one) => one.file))) {
+      const editor = await this.files.beside(file)
+      const edits = head.beside!.filter(
+        (one) => one.file === file && editor?.text.slice(one.from, one.to) === one.found,
+      )
+      if (editor && edits.length) stated.push([editor, edits])
+    }
+    const beside = new Set(stated.flatMap(([, edits]) => edits.map((one) => one.name)))
+    const now = (head.kept ?? [])
+      .filter((n) => !beside.has(n))
+      .map((n) => ({
         name: n,
         from: this.held.get(n) ?? null,
         to: model.params.find((p) => p.name === n)?.value ?? null,
       }))
-      const news = now.filter((one: Held) => one.from !== one.to)
-      for (const one of news) if (one.to !== null) this.held.set(one.name, one.to)
-      this.editor.apply(head.edits ?? [], head.version, name, news)
-      const names = news.map((one: Held) => one.name).join(', ')
-      if (names)
-        this.say(`${names} follows from an expression: the value holds for this session and is not in the text`)
-    })
+    const news = now.filter((one: Held) => one.from !== one.to)
+    for (const one of news) if (one.to !== null) this.held.set(one.name, one.to)
+    let joined = this.editor.apply(head.edits ?? [], head.version, name, news)
+    for (const [editor, edits] of stated) joined = editor.apply(edits, undefined, name, [], joined) || joined
+    const names = news.map((one: Held) => one.name).join(', ')
+    if (names) this.say(`${names}: the value holds for this session, for no text of the model states it as a number`)
   }
 
   /** The last of a name runs when the hand rests. */

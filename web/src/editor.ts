@@ -333,13 +333,16 @@ export class Editor {
     while (this.pending && this.online) await new Promise((r) => setTimeout(r, 5))
   }
 
-  /** Edits that the engine made of a version of the text, as one step of the history. */
-  apply(edits: EditFact[], version = this.version, name = 'Edit', held: Held[] = []): void {
+  /** Edits that the engine made of a version of the text, as one step of the history, or part of the last one; true if
+   * there are any. */
+  apply(edits: EditFact[], version = this.version, name = 'Edit', held: Held[] = [], joined = false): boolean {
     const effects = held.map((one) => holding.of(one))
-    if (!edits.length && !effects.length) return
+    if (!edits.length && !effects.length) return false
     const since = this.past.filter((p) => p.version >= version)
-    if (this.version - version !== since.length)
-      return this.onTrouble('The text has changed too much meanwhile: do it again')
+    if (this.version - version !== since.length) {
+      this.onTrouble('The text has changed too much meanwhile: do it again')
+      return false
+    }
     // What was typed meanwhile moves the places.
     const later = [
       ...since.map((p) => p.changes),
@@ -356,7 +359,8 @@ export class Editor {
         insert: e.insert,
       }
     })
-    this.view.dispatch({ changes, effects, annotations: stepOf(name), userEvent: 'input.hand' })
+    this.view.dispatch({ changes, effects, annotations: stepOf(name, joined), userEvent: 'input.hand' })
+    return true
   }
 
   // What is known of the text.

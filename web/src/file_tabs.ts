@@ -58,6 +58,17 @@ export class FileTabs {
     return this.sheets.get(file)?.editor
   }
 
+  /** The editor of a file that the model reads; none if the page cannot have its text. */
+  async beside(file: string): Promise<Editor | undefined> {
+    if (this.link.local) return undefined
+    const editor = await this.load(file).then(
+      (sheet) => sheet.editor,
+      () => undefined,
+    )
+    await editor?.synced()
+    return editor
+  }
+
   /** Opens what was open when the page was last here and what has unsaved changes; what is open joins the server's. */
   begin(unsaved: string[]): void {
     for (const file of new Set([...this.sheets.keys(), ...stored<string[]>(this.kept, []), ...unsaved])) {

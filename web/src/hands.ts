@@ -6,16 +6,26 @@ import { h, shown } from './dom'
 import { Gumball } from './gumball'
 import { type Link, Newest, Refused } from './link'
 import type { Preview } from './preview'
-import type { EditFact, FaultFact, HandleFact } from './protocol'
+import type { BesideFact, EditFact, FaultFact, HandleFact } from './protocol'
 import { model, on } from './state'
 import { typed } from './typed'
 import type { Drawn, View } from './view'
+
+/** What the engine wrote after a change by hand. */
+export interface Written {
+  version?: number
+  edits?: EditFact[]
+  /** Parameters whose values the model's own text does not state as numbers. */
+  kept?: string[]
+  /** Where texts beside it state those. */
+  beside?: BesideFact[]
+}
 
 export interface Handlers {
   select(name: string): void
   hover(name: string): void
   say(words: string): void
-  apply(edits: EditFact[], version: number | undefined, name: string): void
+  written(head: Written, name: string): Promise<void>
   synced(): Promise<void>
   status(words: string): void
   open(name: string): void
@@ -522,7 +532,7 @@ export class Hands {
     await this.requests.settled()
     try {
       const { head } = await this.link.ask('drag_end', { commit })
-      if (commit) this.act.apply(head.edits ?? [], head.version, `Drag ${drag.item.object}`)
+      if (commit) await this.act.written(head, `Drag ${drag.item.object}`)
     } catch (error) {
       this.act.status((error as Error).message)
     }

@@ -12,6 +12,9 @@ import { icon } from './icons'
 /** What a step is called in the list. */
 export const called = Annotation.define<string>()
 
+/** Whether a change belongs to the step before it, which is in another text. */
+const joins = Annotation.define<boolean>()
+
 /** A value of a parameter that the text computes from others: null is that of the text. */
 export interface Held {
   name: string
@@ -51,7 +54,7 @@ export function keptSteps(): Extension {
 export const stepEnds = isolateHistory.of('full')
 
 /** Annotations of a step of its own. */
-export const stepOf = (name: string) => [stepEnds, called.of(name)]
+export const stepOf = (name: string, joined = false) => [stepEnds, called.of(name), joins.of(joined)]
 
 function word(tr: Transaction): string {
   const given = tr.annotation(called)
@@ -76,7 +79,9 @@ export interface LogStep {
 }
 
 /** A step, and the text that it is in, if it is one of a text. */
-type Step = { name: string; of: EditorView } | (LogStep & { of: null })
+type Step = ({ name: string; of: EditorView } | (LogStep & { of: null })) & { joined: boolean }
+
+const names = (list: Step[]) => list.filter((s) => !s.joined).map((s) => s.name)
 
 const count = (list: Step[], of: EditorView) => list.filter((s) => s.of === of).length
 
@@ -110,19 +115,19 @@ export class Steps {
 
   /** The names of the steps, the last one last. */
   get done(): string[] {
-    return this.past.map((s) => s.name)
+    return names(this.past)
   }
 
   /** The names of those that were taken back, the next one last. */
   get undone(): string[] {
-    return this.ahead.map((s) => s.name)
+    return names(this.ahead)
   }
 
   follow(update: ViewUpdate): void {
     if (!update.transactions.length) return
     const of = update.view
     if (update.docChanged) this.onText()
-    let name = 'Edit'
+    let [name, joined] = ['Edit', false]
     for (const tr of update.transactions) {
       const back = tr.isUserEvent('undo')
       if (back || tr.isUserEvent('redo')) {
@@ -136,13 +141,14 @@ export class Steps {
         for (const e of tr.effects) if (e.is(holding)) this.onHeld(e.value)
       } else if (tr.docChanged || tr.effects.some((e) => e.is(holding))) {
         name = word(tr)
+        joined = tr.annotation(joins) ?? false
         // What was taken back of any text cannot be done again after a change of one.
         if (tr.annotation(Transaction.addToHistory) !== false) this.ahead.length = 0
       }
     }
     while (count(this.past, of) < undoDepth(update.state)) {
       if (this.past.at(-1)?.of !== of) this.end()
-      this.past.push({ name, of })
+      this.past.push({ name, of, joined })
     }
     drop(this.past, of, count(this.past, of) - undoDepth(update.state))
     drop(this.ahead, of, count(this.ahead, of) - redoDepth(update.state))
@@ -158,7 +164,7 @@ export class Steps {
   add(step: LogStep): void {
     this.end()
     this.ahead.length = 0
-    this.past.push({ ...step, of: null })
+    this.past.push({ ...step, of: null, joined: false })
     this.onChange()
   }
 
@@ -179,7 +185,8 @@ export class Steps {
       }
       if (!step || !(many > 0 ? undo : redo)(step.of)) break
       this.onTurned(step.of)
-      if (!(single && this.idle)) gone++
+      const within = many > 0 ? step.joined : this.ahead.at(-1)?.joined
+      if (!within && !(single && this.idle)) gone++
     }
     return gone
   }

@@ -243,7 +243,7 @@ const hands = new Hands(view, link, preview, shell.view, {
   hover: actions.hover,
   say,
   status: say,
-  apply: (list, version, name) => editor.apply(list, version, name),
+  written: (head, name) => changes.written(head, name),
   synced: () => editor.synced(),
   open: (name) => void locate(name, true),
   place: (at, grain) => making.place(at, grain),

@@ -387,6 +387,22 @@ export interface EditFact {
   insert: string
 }
 
+/** A number of a parameter in a file beside the text, and its new value. */
+export interface BesideFact {
+  /** The parameter. */
+  name: string
+  /** The file. */
+  file: string
+  /** Where the number begins. */
+  from: number
+  /** Where it ends. */
+  to: number
+  /** What is there. */
+  found: string
+  /** The replacement. */
+  insert: string
+}
+
 /** A number that moves a dragged point. */
 export interface HandleFact {
   /** Its name. */

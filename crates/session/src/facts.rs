@@ -2,8 +2,8 @@
 
 use crate::drag::own_numbers;
 use crate::replies::{
-    ArgumentFact, CorrectionFact, FaultFact, KindFact, ObjectFact, ObjectState, ParamFact,
-    RemarkFact, TextRange, ValueFact,
+    ArgumentFact, BesideFact, CorrectionFact, FaultFact, KindFact, ObjectFact, ObjectState,
+    ParamFact, RemarkFact, TextRange, ValueFact,
 };
 use crate::text::unit;
 use moldloft_diag::{Diagnostic, Span};
@@ -39,6 +39,25 @@ pub fn elsewhere(document: &Document, span: Span) -> Option<(String, TextRange)>
     let (name, text) = (sources.name(span.file)?, sources.text(span.file)?);
     let place = [unit(text, span.start as usize), unit(text, span.end as usize)];
     Some((name.to_string(), place))
+}
+
+/// The number of a parameter in a file beside the text, and its present value; `None` if no such
+/// file states it as a number.
+pub fn beside(document: &Document, param: &str) -> Option<BesideFact> {
+    let param = document.params().iter().find(|p| p.name == param)?;
+    let (file, [from, to]) = elsewhere(document, param.span)?;
+    let text = document.sources().text(param.span.file)?;
+    let found = text.get(param.span.start as usize..param.span.end as usize)?;
+    let stated = found.parse::<f64>().is_ok_and(|x| x == param.default);
+    let insert = moldloft_syntax::number::plain(param.value);
+    stated.then(|| BesideFact {
+        name: param.name.clone(),
+        file,
+        from,
+        to,
+        found: found.into(),
+        insert,
+    })
 }
 
 /// The files that were read, in the order in which they were first.

@@ -177,6 +177,23 @@ pub struct EditFact {
     pub insert: String,
 }
 
+/// A number of a parameter in a file beside the text, and its new value.
+#[derive(Serialize)]
+pub struct BesideFact {
+    /// The parameter.
+    pub name: String,
+    /// The file.
+    pub file: String,
+    /// Where the number begins.
+    pub from: usize,
+    /// Where it ends.
+    pub to: usize,
+    /// What is there.
+    pub found: String,
+    /// The replacement.
+    pub insert: String,
+}
+
 /// A number that moves a dragged point.
 #[derive(Serialize)]
 pub struct HandleFact {

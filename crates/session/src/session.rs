@@ -240,6 +240,11 @@ impl Session {
             Ask::Open | Ask::Sync | Ask::Settle | Ask::Close | Ask::Ping => {}
             Ask::Text { text } => self.take_text(text),
             Ask::TextBeside { name, text } => {
+                // Its numbers count again, in place of values that were set.
+                let states = |param: &String| {
+                    facts::beside(&self.document, param).is_some_and(|found| found.file == name)
+                };
+                self.kept.retain(|param| !states(param));
                 self.texts.put(&name, text.as_deref());
                 self.take_text(self.text.clone());
             }
@@ -488,6 +493,8 @@ impl Session {
         let text = self.document.text();
         self.put_edits(frame, &text);
         frame.put("kept", self.kept.clone());
+        let beside = self.kept.iter().filter_map(|name| facts::beside(&self.document, name));
+        frame.put("beside", json_of(beside.collect::<Vec<_>>()));
     }
 
     /// A change of the text by the document, whose edits the page applies and returns.

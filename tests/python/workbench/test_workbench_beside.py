@@ -12,6 +12,7 @@ from typing import Any
 
 import pytest
 
+from conftest import ROOT
 from moldloft.workbench.text import change_set
 from page_in_browser import Bench, children, in_browser
 from test_workbench import Page, workbench
@@ -230,3 +231,52 @@ def test_files_are_tabs_with_one_history(beside: Callable[[], Bench], folder: Pa
     b.page.reload()
     b.page.locator("body[data-state=alive]").wait_for()
     b.until(lambda: b.page.evaluate("(f) => window.moldloft.text(f)", table))
+
+
+MAST = """load "dam.skt";
+param float lift = 8 in [0, 20];
+AbsPoint mast(dam.CREST, 0, 100 + lift);
+Line stay(dam.p4, mast);
+"""
+
+
+@in_browser
+def test_a_drag_writes_into_the_file_that_states_the_number(
+    beside: Callable[[], Bench], folder: Path
+) -> None:
+    sketch, model = folder / "dam.skt", folder / "model.sdl"
+    before = (ROOT / "examples/sketch/dam.skt").read_text(encoding="utf-8")
+    sketch.write_text(before, encoding="utf-8")
+    model.write_text(MAST, encoding="utf-8")
+    b = beside()
+
+    def texts() -> list[str]:
+        return [b.page.evaluate("(f) => window.moldloft.text(f)", f) for f in ("", str(sketch))]
+
+    b.page.get_by_role("application", name="model").focus()
+    b.page.keyboard.press("2")
+    b.page.wait_for_timeout(200)
+    x, y = b.hand("project('mast')")
+    b.page.mouse.move(x, y)
+    b.page.mouse.down()
+    for k in range(1, 5):
+        b.page.mouse.move(x + 3 * k, y - 2 * k)
+    b.hand("settled()")
+    b.page.mouse.up()
+    b.hand("settled()")
+    crest, lift = b.param("dam.CREST"), b.param("lift")
+    assert crest != 16 and lift != 8
+    after = [MAST.replace("8 in", f"{lift:g} in"), before.replace("16 IN", f"{crest:g} IN")]
+    assert texts() == after
+    # Two texts, one step.
+    assert b.hand("steps().done") == ["Drag mast"]
+    b.page.keyboard.press("Control+z")
+    b.hand("settled()")
+    assert texts() == [MAST, before] and not b.hand("steps().done")
+    b.until(lambda: (b.param("dam.CREST"), b.param("lift")) == (16, 8))
+    b.page.keyboard.press("Control+Shift+Z")
+    b.hand("settled()")
+    assert texts() == after
+    b.until(lambda: (b.param("dam.CREST"), b.param("lift")) == (crest, lift))
+    b.page.keyboard.press("Control+s")
+    b.until(lambda: [model.read_text(), sketch.read_text()] == after)

@@ -104,7 +104,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             let mut values = BTreeMap::new();
             for (key, name, default, range) in drawn.parameters() {
                 let full = format!("{prefix}.{name}");
-                let place = Span::new(file.file, 0, 0);
+                let place = drawn.place(key).unwrap_or(Span::new(file.file, 0, 0));
                 match self.sketch_param(full, default, range, place) {
                     Ok(Some(value)) => drop(values.insert(key.clone(), value)),
                     Ok(None) => {}

@@ -6,6 +6,7 @@ pub(crate) mod library;
 pub mod module;
 pub mod scope;
 pub mod sketch_file;
+mod sketch_numbers;
 pub(crate) mod world;
 
 pub use library::LIBRARIES;

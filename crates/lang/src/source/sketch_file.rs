@@ -4,6 +4,7 @@
 //! computes their coordinates from the present values of the dimensions, which are parameters, and
 //! declares ordinary objects: points, lines, curves, faces, the solid.
 
+use super::sketch_numbers::{NumberPlaces, literals};
 use crate::World;
 use moldloft_diag::{Diagnostic, FileId, Span};
 use moldloft_sketch::{
@@ -40,6 +41,8 @@ pub struct Drawn {
     pub planes: Planes,
     /// True if it is a result of the file and not only an operand.
     pub result: bool,
+    /// Where the text states its numbers, by their keys.
+    places: BTreeMap<String, Span>,
     estimate: OnceLock<Option<Estimate>>,
 }
 
@@ -61,6 +64,11 @@ impl Drawn {
             .filter(|(_, d)| d.role == DimensionRole::Driving)
             .filter_map(|(key, d)| Some((key, &d.name, d.value.as_ref()?.literal()?, d.range)));
         variables.chain(dimensions)
+    }
+
+    /// Where the text states a number; `None` if another file or an expression does.
+    pub fn place(&self, key: &str) -> Option<Span> {
+        self.places.get(key).copied()
     }
 }
 
@@ -125,6 +133,7 @@ impl SketchFile {
             let mut faults = Vec::new();
             let commands = script.as_deref().unwrap_or(text);
             let mut at = 0;
+            let mut places = NumberPlaces::default();
             for line in commands.split_inclusive('\n') {
                 let start = at;
                 at += line.len();
@@ -134,6 +143,9 @@ impl SketchFile {
                     None => Span::new(file, start as u32, (start + line.len()) as u32),
                 };
                 faults.extend(session.run_line(line).into_iter().filter_map(|r| reported(r, span)));
+                if let (None, Some(object)) = (&script, session.active_object()) {
+                    places.take(object, line, start);
+                }
                 if session.over() {
                     break;
                 }
@@ -154,6 +166,7 @@ impl SketchFile {
                         planes: Planes::of(&object.drawing),
                         object: object.clone(),
                         result,
+                        places: stated(object, &places, text, file),
                         estimate: OnceLock::new(),
                     })
                     .collect();
@@ -185,6 +198,20 @@ impl SketchFile {
             if self.objects.len() == 1 && stem.eq_ignore_ascii_case(name) { stem } else { name };
         crate::model_file::names::identifier(chosen)
     }
+}
+
+/// Where a text states the plain numbers of an object, by their keys.
+fn stated(
+    object: &SketchObject,
+    places: &NumberPlaces,
+    text: &str,
+    file: FileId,
+) -> BTreeMap<String, Span> {
+    let one = |(key, value): (&String, f64)| {
+        let range = places.of(&object.name, key, value, text)?;
+        Some((key.clone(), Span::new(file, range.start as u32, range.end as u32)))
+    };
+    literals(object).filter_map(|(key, _, value)| one((key, value))).collect()
 }
 
 /// The fault of objects whose numbers are not of one unit: together they are no model.

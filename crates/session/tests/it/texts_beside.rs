@@ -82,3 +82,69 @@ fn faults_and_declarations_have_their_places_in_their_file() {
     let reply = ask(&mut s, json!({"kind": "text", "text": "AbsPoint A(0, 0, 0);\n"}));
     assert_eq!(reply.head["reads"], json!([]));
 }
+
+const DAM: &str = include_str!("../../../../examples/sketch/dam.skt");
+
+fn dam(text: &str) -> Session {
+    let folder = Folder(vec![("dam.skt", text.to_string())]);
+    Session::new(Box::new(folder), "model.sdl", "load \"dam.skt\";\nAbsPoint A(dam.p4.x, 0, 0);\n")
+}
+
+/// A value that is set and written: the reply to `write`, and the text beside with its edits.
+fn written(s: &mut Session, text: &str, values: serde_json::Value) -> (Viewer, Option<String>) {
+    let reply = ask(s, json!({"kind": "write", "values": values}));
+    let beside = reply.head["beside"].as_array().cloned().unwrap_or_default();
+    let mut edited = text.to_string();
+    for one in beside.iter().rev() {
+        assert_eq!(one["file"], "/models/dam.skt");
+        let at = |k: &str| one[k].as_u64().unwrap() as usize;
+        assert_eq!(&text[at("from")..at("to")], one["found"].as_str().unwrap());
+        edited.replace_range(at("from")..at("to"), one["insert"].as_str().unwrap());
+    }
+    let shown = seen(s);
+    ask(s, json!({"kind": "text_beside", "name": "/models/dam.skt", "text": edited}));
+    (shown, (edited != text).then_some(edited))
+}
+
+#[test]
+fn numbers_of_a_sketch_are_written_where_it_states_them() {
+    let forms = [
+        DAM.to_string(),
+        DAM.replace("CONVERT", "SET CREST 18\nCONVERT"),
+        DAM.replace("CONVERT", "SET LENGTH1 16\nSET CREST = 16\nCONVERT"),
+        // The automatic name D1 is not in the text.
+        DAM.replace("DIMENSION LENGTH1 Y", "DIMENSION Y"),
+    ];
+    for text in &forms {
+        let length = if text.contains("LENGTH1") { "dam.LENGTH1" } else { "dam.D1" };
+        for (name, value) in [("dam.CREST", 21.25), (length, 40.0), ("dam.PARAPET", 12.5)] {
+            let mut s = dam(text);
+            let (shown, edited) = written(&mut s, text, json!({name: value}));
+            let edited = edited.unwrap_or_else(|| panic!("{name} is not written:\n{text}"));
+            assert_eq!(seen(&mut s), seen(&mut dam(&edited)), "{name}");
+            assert_eq!(shown.items, seen(&mut s).items, "{name}");
+            assert_eq!(edited.lines().count(), text.lines().count());
+            // The file counts again: nothing holds what was set.
+            ask(&mut s, json!({"kind": "text_beside", "name": "/models/dam.skt", "text": null}));
+            assert_eq!(seen(&mut s), seen(&mut dam(text)), "{name}");
+        }
+    }
+}
+
+#[test]
+fn a_number_that_no_file_states_is_held() {
+    // The value is the result of an expression, in which the number 16 is another.
+    let text = DAM.replace("= 16 IN 10 30", "= \"32/2\" IN 10 30");
+    let mut s = dam(&text);
+    let open = opened(&mut s, 3);
+    let (shown, edited) = written(&mut s, &text, json!({"dam.HEIGHT": 80.0}));
+    assert!(edited.is_some() && shown != open);
+    let script = DAM.lines().map(|line| json!(line)).collect::<Vec<_>>();
+    let text = json!({"format": "sketch", "version": 1, "script": script}).to_string();
+    let folder = Folder(vec![("dam.skt.json", text)]);
+    let model = "load \"dam.skt.json\";\n";
+    let mut s = Session::new(Box::new(folder), "model.sdl", model);
+    let reply = ask(&mut s, json!({"kind": "write", "values": {"dam.CREST": 20.0}}));
+    assert_eq!(reply.head["beside"], json!([]), "{}", reply.head);
+    assert_eq!(reply.head["kept"], json!(["dam.CREST"]));
+}
