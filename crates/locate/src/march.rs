@@ -148,6 +148,9 @@ const LAST_STEP: f64 = 1e-7;
 /// At a crease the surface, and with it the branch, turns by an angle of at least this cosine.
 const CREASE: f64 = 0.9999;
 
+/// A station is at a joint if its parameter differs from that by rounding.
+const AT_JOINT: f64 = 1e-12;
+
 /// A distance from a joint that separates its sides.
 const SAME_POINT: f64 = 1e-9;
 
@@ -721,8 +724,12 @@ impl<'a> Crossing<'a> {
         sign: f64,
     ) -> Option<[TracePoint; 2]> {
         let share = |&(k, x): &(usize, f64)| (x - from.q[k]) / (ahead[k] - from.q[k]);
-        let mut on_way: Vec<&(usize, f64)> =
-            lines.iter().filter(|(k, x)| (from.q[*k] - x) * (ahead[*k] - x) < 0.0).collect();
+        let begins_at = |&(k, x): &(usize, f64)| (from.q[k] - x).abs() <= AT_JOINT;
+        let crosses = |line: &(usize, f64)| {
+            let &(k, x) = line;
+            (from.q[k] - x) * (ahead[k] - x) < 0.0 || begins_at(line) && ahead[k] != from.q[k]
+        };
+        let mut on_way: Vec<&(usize, f64)> = lines.iter().filter(|line| crosses(line)).collect();
         on_way.sort_by(|a, b| share(a).total_cmp(&share(b)));
         on_way.into_iter().find_map(|line| {
             let &(k, value) = line;
@@ -744,7 +751,10 @@ impl<'a> Crossing<'a> {
             let turned = before.tangent.dot(after.tangent) < CREASE;
             let smooth = before.tangent.dot(from.tangent) > LARGEST_TURN;
             let onward = sign * (x - from.x).dot(from.tangent) >= -1e-12 * self.size;
-            (turned && smooth && onward && at[..self.unknowns()].iter().all(inside))
+            // A branch that begins at the crease may be beyond it.
+            let turn = |side: &TracePoint| side.tangent.distance(from.tangent);
+            let ahead = !begins_at(line) || turn(&before) < turn(&after);
+            (turned && smooth && onward && ahead && at[..self.unknowns()].iter().all(inside))
                 .then_some([before, after])
         })
     }

@@ -276,3 +276,41 @@ def test_parts_meet_along_their_intersection(seed: int) -> None:
                 "k": float(rng.uniform(-1, 1)),
             }
         )
+
+
+def prism(name: str, axes: np.ndarray, count: int, middle: np.ndarray, width: float) -> str:
+    """A body of plane faces along the third axis, eight long."""
+    turns = 2 * np.pi * np.arange(count) / count
+    rows = []
+    for k, turn in enumerate(turns):
+        out = width * (axes[0] * np.cos(turn) + axes[1] * np.sin(turn))
+        for end, along in (("L", -4), ("H", 4)):
+            x, y, z = (float(c) for c in middle + out + axes[2] * along)
+            rows.append(f"AbsPoint {end}{name}{k}({x!r}, {y!r}, {z!r});")
+        rows.append(f"Line edge{name}{k}(L{name}{k}, H{name}{k});")
+    for k in range(count):
+        rows.append(f"RuledSurf f{name}{k}(edge{name}{k}, edge{name}{(k + 1) % count});")
+    faces = ", ".join(f"f{name}{k}" for k in range(count))
+    return "\n".join([*rows, f'PolySurf {name}({{{faces}}}, "v");'])
+
+
+@pytest.mark.parametrize("seed", range(1000 if SOAK else 24))
+def test_bodies_of_several_faces_meet_in_one_closed_curve(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    axes = frame(rng), frame(rng)
+    while abs(axes[0][2] @ axes[1][2]) > 0.8:
+        axes = axes[0], frame(rng)
+    counts = rng.integers(3, 7, 2)
+    wide = prism("a", axes[0], counts[0], np.zeros(3), 1.0)
+    narrow = prism("b", axes[1], counts[1], rng.uniform(-0.2, 0.2, 3), 0.25)
+    cut = (
+        "AbsMagnet near(b, 0.9, 0.5); Intersection x(a, near); IntSnake s(a, x); IntSnake t(b, x);"
+    )
+    model = moldloft.loads(f"{wide}\n{narrow}\n{cut}")
+    assert not [d for d in model.diagnostics if d.severity == "error"]
+    curve, first, second = (model[name] for name in "xst")
+    ts = np.linspace(0, 1, 60)
+    places = curve(ts)
+    np.testing.assert_allclose(places[0], places[-1], atol=1e-13)
+    np.testing.assert_allclose(first(ts), places, atol=1e-13)
+    np.testing.assert_allclose(second(ts), places, atol=1e-13)

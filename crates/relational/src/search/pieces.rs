@@ -14,6 +14,10 @@ const SPEED_ACCURACY: f64 = 1e-12;
 /// shapes to rounding.
 const PLACE_ACCURACY: f64 = 1e-13;
 
+/// Stations within this fraction of the size are one, whose directions differ at a crease.
+const SAME_STATION: f64 = 1e-13;
+const SAME_DIRECTION: f64 = 1e-6;
+
 /// A stretch between stations is halved this many times at most.
 const MOST_HALVINGS: u32 = 8;
 
@@ -158,10 +162,10 @@ pub(super) fn fitted(crossing: &Crossing<'_>, stops: &[PieceEnd]) -> Option<Vec<
     let mut all: Vec<PieceFit> = Vec::with_capacity(stops.len());
     let mut seam = false;
     for pair in stops.windows(2) {
-        // At a seam or a crease the stations coincide.
+        // Stations coincide at a seam or a crease, and where a closed branch comes back to its start.
         let [a, b] = [&pair[0].station, &pair[1].station];
-        if at_seam(a, b) || a.x == b.x {
-            seam = true;
+        if at_seam(a, b) || a.x.distance(b.x) <= SAME_STATION * crossing.size {
+            seam |= at_seam(a, b) || a.tangent.distance(b.tangent) > SAME_DIRECTION;
             continue;
         }
         let mut a = pair[0];

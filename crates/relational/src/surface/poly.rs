@@ -77,22 +77,23 @@ impl<T: Real> PiecewiseSurface<T> {
         self.surfaces[k].jet(T::from(u), T::from(v), Order::Zero).p.re()
     }
 
-    fn check_seam(&self, k: usize, tolerance: f64) -> Result<(), CallError> {
-        // The widest gap between an end of one piece and an end of the next, and where.
-        let gap = |from: f64, to: f64, turned: bool| {
-            let mut widest = (0.0f64, 0.0);
-            for i in 0..=TRIALS {
-                let t = i as f64 / TRIALS as f64;
-                let other = if turned { 1.0 - t } else { t };
-                let gap = self.place(k - 1, from, t).distance(self.place(k, to, other));
-                // Written so that NaN counts.
-                if gap.is_nan() || gap > widest.0 {
-                    widest = (gap, t);
-                }
+    /// The widest gap between an end of piece `k` - 1 and an end of piece `k`, and where.
+    fn gap(&self, k: usize, [from, to]: [f64; 2], turned: bool) -> (f64, f64) {
+        let mut widest = (0.0f64, 0.0);
+        for i in 0..=TRIALS {
+            let t = i as f64 / TRIALS as f64;
+            let other = if turned { 1.0 - t } else { t };
+            let gap = self.place(k - 1, from, t).distance(self.place(k, to, other));
+            // Written so that NaN counts.
+            if gap.is_nan() || gap > widest.0 {
+                widest = (gap, t);
             }
-            widest
-        };
-        let (widest, at) = gap(1.0, 0.0, false);
+        }
+        widest
+    }
+
+    fn check_seam(&self, k: usize, tolerance: f64) -> Result<(), CallError> {
+        let (widest, at) = self.gap(k, [1.0, 0.0], false);
         if widest <= tolerance {
             return Ok(());
         }
@@ -108,8 +109,12 @@ impl<T: Real> PiecewiseSurface<T> {
             .related(self.surfaces[k].key, "begins on the other")
             .in_item(k)
             .in_field(PolySurf::<T>::SURFACES);
-        let meets = |from: f64, to: f64, turned: bool| gap(from, to, turned).0 <= tolerance;
-        Err(if meets(1.0, 0.0, true) {
+        let meets =
+            |from: f64, to: f64, turned: bool| self.gap(k, [from, to], turned).0 <= tolerance;
+        let turned = Self { surfaces: self.surfaces.clone(), by_u: !self.by_u };
+        Err(if turned.gap(k, [1.0, 0.0], false).0 <= tolerance {
+            fault.help(format!("they meet along {across}: `along = \"{across}\"`"))
+        } else if meets(1.0, 0.0, true) {
             fault.help(format!("they meet when {across} of piece {} is reversed", k + 1))
         } else if meets(1.0, 1.0, false) || meets(1.0, 1.0, true) {
             fault.help(format!("piece {} ends there: reverse its {along}", k + 1))
