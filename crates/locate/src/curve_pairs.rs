@@ -316,6 +316,8 @@ impl<'a> PairSearch<'a> {
                 pairs.push((apart(p, q), i, j));
             }
         }
+        // No pair of points has that distance yet: beginnings may be the nearest points.
+        self.bound *= 1.0 + 3.0 * NEARER;
         pairs.retain(|pair| pair.0 <= self.bound.max(self.near));
         pairs.sort_by(|x, y| x.0.total_cmp(&y.0).then((x.1, x.2).cmp(&(y.1, y.2))));
         for nearest in [None, Some(MOST_NEAREST)] {

@@ -248,6 +248,16 @@ def test_pairs_of_curves_meet_where_dense_polylines_cross(seed: int) -> None:
             assert len(found.points) == crossings(p[:, :2], q[:, :2])
 
 
+def test_beginnings_may_be_the_nearest_points() -> None:
+    m = moldloft.loads(
+        "AbsPoint A(0, 0, 0); AbsPoint B(0, -1, 0); AbsPoint C(-0.3, 0.4, 0); AbsPoint D(-1, 1, 0);"
+        "Line a(A, B); Line b(C, D);"
+    )
+    found = m["a"].intersect(m["b"])
+    assert found.complete and not len(found.points)
+    assert found.nearest == ((0, 0), pytest.approx(0.5))
+
+
 def crossings(p: np.ndarray, q: np.ndarray) -> int:
     """The number of crossings of two polylines in the plane."""
     d, e = np.diff(p, axis=0)[:, None], np.diff(q, axis=0)[None]
