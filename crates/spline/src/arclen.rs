@@ -24,7 +24,7 @@ impl std::error::Error for BeyondEnd {}
 
 /// The parameters `a`, the breaks strictly between, `b`, in that order; each break with the
 /// derivatives of its parameter.
-fn pieces<T: Real>(curve: &dyn Curve<T>, a: T, b: T) -> Vec<T> {
+pub fn smooth_pieces<T: Real>(curve: &dyn Curve<T>, a: T, b: T) -> Vec<T> {
     let (low, high) = (a.re().min(b.re()), a.re().max(b.re()));
     let breaks = breaks_between(&curve.breaks(), curve.closed(), low, high);
     let mut all = vec![a];
@@ -68,7 +68,7 @@ pub fn curve_integral<T: Real>(
     accuracy: f64,
     f: impl Fn(T) -> T,
 ) -> T {
-    let ends = pieces(curve, a, b);
+    let ends = smooth_pieces(curve, a, b);
     let share = accuracy / (ends.len() - 1) as f64;
     let mut sum = T::zero();
     for w in ends.windows(2) {
@@ -113,7 +113,7 @@ pub fn inv_arclen<T: Real>(
             a.re() + if backwards { -turns } else { turns }
         }
     };
-    let ends = pieces(curve, T::from(a.re()), T::from(far));
+    let ends = smooth_pieces(curve, T::from(a.re()), T::from(far));
     let share = 0.1 * accuracy / ends.len() as f64;
     let length =
         |a: f64, b: f64| integrate(T::from(a), T::from(b), share, |t| speed(curve, t)).re();

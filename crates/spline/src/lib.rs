@@ -44,7 +44,7 @@ mod surface_taped;
 mod tensor;
 
 pub use arc::{ArcError, CircularArc};
-pub use arclen::{BeyondEnd, arclen, curve_integral, inv_arclen};
+pub use arclen::{BeyondEnd, arclen, curve_integral, inv_arclen, smooth_pieces};
 pub use basis::Basis;
 pub use by_arclen::ByArclen;
 pub use curvature_jumps::curvature_breaks;
