@@ -120,7 +120,7 @@ export class Board {
 
   constructor(
     private readonly link: Link,
-    private readonly editor: Editor,
+    private editor: Editor,
     private readonly say: (words: string) => void,
   ) {
     this.pointer = new BoardPointer(this.svg, this.page, this.painter, this.solid, this)
@@ -169,6 +169,16 @@ export class Board {
 
   // What is shown.
 
+  /** Draws the sketch of this text from now on. */
+  open(editor: Editor): void {
+    if (editor === this.editor) return
+    this.editor = editor
+    this.object = this.text = this.last = null
+    this.fitted = false
+    this.endChain()
+    this.refresh()
+  }
+
   show(on: boolean): void {
     this.element.hidden = !on
     if (!on) return
@@ -209,7 +219,7 @@ export class Board {
 
   private async ask(kind: string, fields: Facts = {}): Promise<Facts> {
     const from = performance.now()
-    const found = await this.link.tell({ kind, object: this.object, ...fields })
+    const found = await this.link.tell({ kind, file: this.editor.file, object: this.object, ...fields })
     this.times.push({ kind, ms: performance.now() - from })
     return found
   }

@@ -187,7 +187,7 @@ export class Editor {
     const name = this.file || model.name
     const program = !this.file || /\.sdl$/i.test(name)
     const of = program ? StreamLanguage.define(programParser(sets)) : []
-    const language = /\.skt$/i.test(name) ? StreamLanguage.define(sketchParser) : of
+    const language = isSketch(name) ? StreamLanguage.define(sketchParser) : of
     this.view.dispatch({ effects: this.language.reconfigure(language) })
   }
 
@@ -476,6 +476,9 @@ export class Editor {
     }
   }
 }
+
+/** True for the names of files of sketches. */
+export const isSketch = (name: string) => /\.skt$/i.test(name)
 
 /** The name of a file without its folders. */
 export const fileName = (path: string) => path.split(/[/\\]/).pop() ?? path

@@ -2,7 +2,7 @@
 // with one history. What is typed in one counts for the model before it is saved.
 
 import { h, store, stored } from './dom'
-import { type Editor, fileName } from './editor'
+import { type Editor, fileName, isSketch } from './editor'
 import type { Link } from './link'
 import { changed, model, on } from './state'
 
@@ -67,6 +67,14 @@ export class FileTabs {
     )
     await editor?.synced()
     return editor
+  }
+
+  /** The sketch that is seen, else the first one: the model itself or a file that it reads. */
+  async sketch(): Promise<Editor> {
+    const main = this.sheets.get('')!.editor
+    if (isSketch(model.name)) return main
+    const name = [this.shown, ...model.files].find(isSketch)
+    return name === undefined ? main : (await this.load(name)).editor
   }
 
   /** Opens what was open when the page was last here and what has unsaved changes; what is open joins the server's. */

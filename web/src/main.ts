@@ -9,7 +9,7 @@ import { ink } from './colour'
 import { commands, SHEETS } from './commands'
 import { connected } from './connection'
 import { h, store, stored } from './dom'
-import { Editor } from './editor'
+import { Editor, isSketch } from './editor'
 import { FileTabs } from './file_tabs'
 import { copyLink, download, give, installDrop, openFiles, openLink } from './files'
 import { Foreign } from './foreign'
@@ -256,6 +256,16 @@ const making = new Making(shell.right, link, {
   apply: (list, version, name) => editor.apply(list, version, name),
   synced: () => editor.synced(),
 })
+/** The drawing board is there for a sketch and for a model that reads one. */
+function offerBoard(): void {
+  const there = shell.tabs.querySelector('[data-sheet=board]') !== null
+  if (!link.local && !there && [model.name, ...model.files].some(isSketch))
+    shell.tabs.append(tab('board', 'Drawing board'))
+}
+on(['files'], offerBoard)
+on(['shown'], () => {
+  if (document.body.dataset.room === 'board' && isSketch(files.current.file)) void rooms.show('board')
+})
 const start = startPage({
   begin: (text, name, reach) => {
     // An empty scene is looked at from where its first points will be.
@@ -271,15 +281,23 @@ const start = startPage({
 })
 shell.stage.append(start.element)
 editor.steps.onText = () => {
-  const hidden = link.still || editor.text.trim() !== '' || /\.skt$/i.test(model.name)
+  const hidden = link.still || editor.text.trim() !== '' || isSketch(model.name)
   if (start.element.hidden && !hidden) void start.refresh()
   start.element.hidden = hidden
 }
-const rooms = new Rooms(shell.stage, link, editor, say, (blob, name) => give(app, blob, name), {
+const rooms = new Rooms(
+  shell.stage,
+  link,
+  editor,
+  () => files.sketch(),
   say,
-  preview: (values) => changes.preview(values),
-  write: actions.write,
-})
+  (blob, name) => give(app, blob, name),
+  {
+    say,
+    preview: (values) => changes.preview(values),
+    write: actions.write,
+  },
+)
 const sheets = new Sheets(shell.sheet, link, actions, () => tablesSheet(editor, actions))
 const section = new SectionPlane(view, shell.section, {
   say,
@@ -527,10 +545,8 @@ link.onMessage = (message) => {
     case 'updates':
       saving.is(message.file, message.dirty)
       files.of(message.file)?.received(message.updates, message.from)
-      if (!message.file) {
-        rooms.refresh()
-        cell?.changed()
-      }
+      rooms.refresh()
+      if (!message.file) cell?.changed()
       break
     case 'saved':
       saving.is(message.file, !!message.dirty)
@@ -595,10 +611,8 @@ async function begin(hello: any): Promise<void> {
   if (hello.words) spell(hello.words)
   const has = (name: string) => shell.tabs.querySelector(`[data-sheet=${name}]`) !== null
   if (!link.local && !has('desk')) shell.tabs.append(tab('desk', 'Fairing desk'), tab('studies', 'Studies'))
-  if (!link.local && /\.skt$/i.test(hello.name) && !has('board')) {
-    shell.tabs.append(tab('board', 'Drawing board'))
-    if (!/^\s*SKETCH/im.test(hello.text)) void sheet('board')
-  }
+  offerBoard()
+  if (isSketch(hello.name) && !/^\s*SKETCH/im.test(hello.text)) void sheet('board')
   if (hello.recovered)
     say(
       'Unsaved changes of an earlier session are back. Save keeps them; “Revert to the saved file” in the commands drops them.',

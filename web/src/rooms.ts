@@ -20,6 +20,8 @@ export class Rooms {
     private readonly stage: HTMLElement,
     private readonly link: Link,
     private readonly editor: Editor,
+    /** The sketch that the board draws: the model itself, or a file that it reads. */
+    private readonly sketch: () => Promise<Editor>,
     private readonly say: (words: string) => void,
     private readonly give: (blob: Blob, name: string) => void,
     private readonly studying: StudyActions,
@@ -36,8 +38,8 @@ export class Rooms {
   load(name: RoomName): Promise<Board | Desk | Studies>
   load(name: RoomName): Promise<Board | Desk | Studies> {
     if (name === 'board') {
-      this.board ??= import('./board').then(({ Board }) => {
-        this.loaded.board = this.place(new Board(this.link, this.editor, this.say))
+      this.board ??= import('./board').then(async ({ Board }) => {
+        this.loaded.board = this.place(new Board(this.link, await this.sketch(), this.say))
         return this.loaded.board
       })
       return this.board
@@ -60,6 +62,7 @@ export class Rooms {
   async show(name: RoomName | null): Promise<void> {
     this.shown = name
     if (name) await this.load(name)
+    if (name === 'board') (await this.load(name)).open(await this.sketch())
     // Meanwhile another one may have been chosen.
     if (this.board) (await this.board).show(this.shown === 'board')
     if (this.desk) (await this.desk).show(this.shown === 'desk')

@@ -81,7 +81,7 @@ class Drawing:
     room
         Which one.
     text
-        Gives the version of the text and the text.
+        Gives the name, the version and the text that a request is about.
     name, folder, library, memory, budget
         As for :class:`~moldloft.workbench.engine.Engine`.
     """
@@ -89,7 +89,7 @@ class Drawing:
     def __init__(
         self,
         room: Room,
-        text: Callable[[], tuple[int, str]],
+        text: Callable[[dict[str, Any]], tuple[str, int, str]],
         name: str,
         folder: str,
         library: Sequence[str],
@@ -102,7 +102,7 @@ class Drawing:
             name, folder, library, memory=memory, budget=room.patience * budget, work=room.work
         )
         self._stopped = False
-        self._known = -1
+        self._known: tuple[str, int] | None = None
         self._waiting: list[tuple[int, dict[str, Any], Say]] = []
         self._task: asyncio.Task[None] | None = None
         self._ending: asyncio.Task[None] | None = None
@@ -156,13 +156,13 @@ class Drawing:
 
     async def _answer(self, request: dict[str, Any]) -> bytes:
         self._stopped = False
-        version, text = self._text()
+        name, version, text = self._text(request)
         sent = {**request, "version": version}
         known = self._engine.pid is not None
         if known:
-            if version != self._known:
+            if (name, version) != self._known:
                 sent["text"] = text
-            self._known = version
+            self._known = name, version
             try:
                 return await self._engine.ask(_data(sent))
             except EngineLostError:
@@ -171,7 +171,7 @@ class Drawing:
                     raise
         # A new process has everything in the text, so the request is sent once more.
         await self._engine.start(text)
-        self._known = version
+        self._known = name, version
         return await self._engine.ask(_data({**request, "version": version}))
 
 

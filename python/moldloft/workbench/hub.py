@@ -133,7 +133,7 @@ class Hub:
         )
         self.rooms = [
             Drawing(
-                room, lambda: (self.main.version, self.main.text), self.path.name, folder,
+                room, self._text_of, self.path.name, folder,
                 self.library, self.memory, self.budget,
             )
             for room in (BOARD, DESK, FILES)
@@ -282,8 +282,10 @@ class Hub:
         elif isinstance(kind, str) and kind in STUDY_KINDS:
             self.later(self._study(tab, message))
         elif room := next((r for r in self.rooms if r.room.takes(kind)), None):
-            unsaved = ", ".join(Path(name).name for name, text in self.others.items() if text.dirty)
-            if unsaved:
+            own = message.get("file")
+            if own and own not in self.others:
+                self.refuse(tab, number, f"`{own}` is not open here")
+            elif unsaved := self._unsaved(own):
                 # Rooms read files, not the texts that count before they are saved.
                 self.refuse(
                     tab, number, f"save {unsaved} first: this reads files as they are saved"
@@ -326,6 +328,22 @@ class Hub:
         self._to(tab, {"kind": "refused", "id": number, "error": error})
 
     # Texts.
+
+    def _text_of(self, request: dict[str, Any]) -> tuple[str, int, str]:
+        """The name, version and text of a request: the model's, or of a file beside it."""
+        name = request.get("file") or ""
+        text = self.others.get(name) if name else self.main
+        if text is None:
+            raise ValueError(f"`{name}` is no longer open")
+        return name, text.version, text.text
+
+    def _unsaved(self, own: str | None) -> str:
+        """Names of unsaved files that a room may read beside the text that it is about."""
+        dirty = [
+            Path(name).name for name, text in self.others.items() if text.dirty and name != own
+        ]
+        # A sketch reads the files that it names.
+        return ", ".join(name for name in dirty if not own or name in self.others[own].text)
 
     def readers(self) -> list[Reader]:
         """All pages, to be notified of changes of a text."""

@@ -7,6 +7,7 @@ import itertools
 import math
 import os
 import re
+import shutil
 import signal
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -15,6 +16,7 @@ from typing import Any
 import pytest
 
 from board_by_hand import BoardHand
+from conftest import ROOT
 from moldloft import Sketch
 from page_in_browser import children, needs_page
 
@@ -99,6 +101,52 @@ def test_a_dam_from_nothing(board: Callable[..., BoardHand]) -> None:
     b.settle()
     assert b.text() == text
     assert b.events < 150 and not b.faults
+
+
+SITE = """load "dam.skt";
+load "shed.skt";
+AbsPoint gate(dam.p4.x, 0, dam.p4.z);
+print dam.volume;
+"""
+
+
+def test_sketches_of_a_model_are_drawn_beside_it(
+    board: Callable[..., BoardHand], tmp_path: Path
+) -> None:
+    for name in ("dam.skt", "shed.skt"):
+        shutil.copy(ROOT / "examples/sketch" / name, tmp_path)
+    dam, shed = tmp_path / "dam.skt", tmp_path / "shed.skt"
+    before = dam.read_text(encoding="utf-8")
+    b = board(SITE, "site.sdl")
+
+    def text(path: Path) -> str:
+        return str(b.page.evaluate("(f) => window.moldloft.text(f)", str(path)))
+
+    # The first sketch that the model reads; the model follows each gesture before it is saved.
+    assert b.settle()["drawn"]["object"] == "DAM"
+    b.page.locator("g.mark.given text").filter(has_text=re.compile("CREST|16")).first.click()
+    b.page.keyboard.type("20")
+    b.key("Enter")
+    b.settle()
+    after = before.replace("= 16 IN", "= 20 IN")
+    assert text(dam) == after and b.text() == SITE
+    b.until(lambda: b.param("dam.CREST") == 20)
+    wider = 169_200 + 4 * 90 * 50
+    b.until(lambda: [float(x) for x in b.hand("model.printed")] == [pytest.approx(wider)])
+    # The board shows the sketch whose tab is chosen, and the history is one over all of them.
+    b.page.get_by_role("tab", name="shed.skt").click()
+    b.until(lambda: b.settle()["drawn"]["object"] == "SHED")
+    b.key("Control+z")
+    b.until(lambda: b.param("dam.CREST") == 16)
+    b.until(lambda: b.settle()["drawn"]["object"] == "DAM")
+    assert text(dam) == before
+    b.key("Control+Shift+z")
+    b.until(lambda: b.param("dam.CREST") == 20)
+    b.settle()
+    b.key("Control+s")
+    b.until(lambda: dam.read_text(encoding="utf-8") == after)
+    assert shed.read_text(encoding="utf-8") == text(shed)
+    assert not b.faults
 
 
 STEPS = {1: (0, 0), 2: (300, 3), 3: (298, 100), 4: (150, 98), 5: (152, 220), 6: (2, 221)}
