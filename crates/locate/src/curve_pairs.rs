@@ -157,7 +157,8 @@ fn square(
 
 /// Descent to a minimum of the distance within a rectangle: Newton's steps, projected to the
 /// rectangle and halved while the distance does not decrease; terms with second derivatives are
-/// left out if they are not convex.
+/// left out if they are not convex. Where the step along both parameters is stopped by a side, those
+/// along one of them lead on: the minimum of a convex distance is that along both.
 fn descend(
     a: &dyn Curve<f64>,
     b: &dyn Curve<f64>,
@@ -165,37 +166,33 @@ fn descend(
     cell: [[f64; 2]; 2],
 ) -> LeastPlace {
     let mut at = start;
-    let (mut value, mut slope, mut second, mut plain) = square(a, b, at, cell);
+    let mut here = square(a, b, at, cell);
     let mut steps = 0;
+    let nearer = |at: [f64; 2], step: [f64; 2], value: f64| {
+        (0..30).find_map(|halvings| {
+            let share = 0.5f64.powi(halvings);
+            let next: [f64; 2] =
+                std::array::from_fn(|k| (at[k] + share * step[k]).clamp(cell[k][0], cell[k][1]));
+            let there = (next != at).then(|| square(a, b, next, cell))?;
+            (there.0 < value).then_some((next, there))
+        })
+    };
     while steps < MOST_STEPS {
+        let (value, slope, second, plain) = here;
         let out = |k: usize| {
             at[k] <= cell[k][0] && slope[k] > 0.0 || at[k] >= cell[k][1] && slope[k] < 0.0
         };
         let free = [!out(0), !out(1)];
-        let step = newton_step(slope, second, plain, free);
-        let mut share = 1.0;
-        let mut better = false;
-        for _ in 0..30 {
-            let next: [f64; 2] =
-                std::array::from_fn(|k| (at[k] + share * step[k]).clamp(cell[k][0], cell[k][1]));
-            if next == at {
-                break;
-            }
-            let there = square(a, b, next, cell);
-            if there.0 < value {
-                at = next;
-                (value, slope, second, plain) = there;
-                better = true;
-                break;
-            }
-            share *= 0.5;
-        }
-        if !better {
-            break;
-        }
+        let alone = [[free[0], false], [false, free[1]]];
+        let found = [free]
+            .into_iter()
+            .chain(alone)
+            .find_map(|along| nearer(at, newton_step(slope, second, plain, along), value));
+        let Some(next) = found else { break };
+        (at, here) = next;
         steps += 1;
     }
-    LeastPlace { at, distance: (2.0 * value).sqrt(), steps }
+    LeastPlace { at, distance: (2.0 * here.0).sqrt(), steps }
 }
 
 /// Newton's step along the free parameters.
