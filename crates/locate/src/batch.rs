@@ -491,7 +491,15 @@ impl<'a> Search<'a> {
                         h12 = h12.clamp(-0.9 * (h11 * h22).sqrt(), 0.9 * (h11 * h22).sqrt());
                     }
                     let det = h11 * h22 - h12 * h12;
-                    [(g[0] * h22 - h12 * g[1]) / det, (h11 * g[1] - g[0] * h12) / det]
+                    let step = [(g[0] * h22 - h12 * g[1]) / det, (h11 * g[1] - g[0] * h12) / det];
+                    // A step that would leave the box from its side is taken along the side instead.
+                    let leaves =
+                        |k: usize| w[k] <= -1.0 && step[k] > 0.0 || w[k] >= 1.0 && step[k] < 0.0;
+                    match [leaves(0), leaves(1)] {
+                        [true, _] => [0.0, g[1] / curvature(h[2], m[2])],
+                        [_, true] => [g[0] / curvature(h[0], m[0]), 0.0],
+                        _ => step,
+                    }
                 }
             };
             if !(step[0].is_finite() && step[1].is_finite()) {
