@@ -250,7 +250,7 @@ export interface ParamFact {
   range: [number, number] | null
   /** True for whole numbers. */
   whole: boolean
-  /** True when the text has it as a number. */
+  /** True when the text, or a file beside it, has it as a number. */
   written: boolean
   /** Its declaration. */
   place: TextRange | null

@@ -79,7 +79,7 @@ pub fn params(document: &Document, text: &str) -> Vec<ParamFact> {
         default: p.default,
         range: p.range.map(|(a, b)| [a, b]),
         whole: p.is_int,
-        written: document.param_is_number(&p.name),
+        written: document.param_is_number(&p.name) || beside(document, &p.name).is_some(),
         place: place(document, text, p.span),
     };
     document.params().iter().map(one).collect()

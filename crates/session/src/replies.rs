@@ -19,7 +19,7 @@ pub struct ParamFact {
     pub range: Option<[f64; 2]>,
     /// True for whole numbers.
     pub whole: bool,
-    /// True when the text has it as a number.
+    /// True when the text, or a file beside it, has it as a number.
     pub written: bool,
     /// Its declaration.
     pub place: Option<TextRange>,

@@ -156,8 +156,8 @@ def with_values(session: _core.Session, text: str, values: Mapping[str, float]) 
     if reply.get("kept"):
         names = ", ".join(reply["kept"])
         raise Error(
-            f"`{names}` follows from an expression: change the text, or leave the engine out "
-            "(`--still`)"
+            f"`{names}` is not stated as a number in this text: change it where it is stated, "
+            "or leave the engine out (`--still`)"
         )
     return _edited(text, reply.get("edits", []))
 
