@@ -3234,7 +3234,8 @@ def Intersection(
     curve, the same on either surface. Its parameter is the fraction of its length.
 
     `IntSnake(a, x)` is the intersection `x` as a snake on its surface `a`. The snakes on both surfaces
-    are `x` itself from end to end, so panels on both sides share its vertices.
+    are `x` itself from end to end, so panels on both sides share its vertices. A body of several surfaces
+    side by side is one `PolySurf`.
 
     A magnet selects the branch nearest to it; a surface, the branch nearest to the middle of the
     parameters of the surface declared first. Other branches are reported. `branch = {1, 2}` is the first of two branches
