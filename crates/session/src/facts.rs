@@ -37,8 +37,10 @@ pub fn elsewhere(document: &Document, span: Span) -> Option<(String, TextRange)>
         return None;
     }
     let (name, text) = (sources.name(span.file)?, sources.text(span.file)?);
-    let place = [unit(text, span.start as usize), unit(text, span.end as usize)];
-    Some((name.to_string(), place))
+    // An editor has one character for each end of a line.
+    let ends = |byte: usize| text.get(..byte).map_or(0, |before| before.matches("\r\n").count());
+    let at = |byte: usize| unit(text, byte) - ends(byte);
+    Some((name.to_string(), [at(span.start as usize), at(span.end as usize)]))
 }
 
 /// The number of a parameter in a file beside the text, and its present value; `None` if no such

@@ -241,12 +241,14 @@ Line stay(dam.p4, mast);
 
 
 @in_browser
+@pytest.mark.parametrize("ends", ["\n", "\r\n"])
 def test_a_drag_writes_into_the_file_that_states_the_number(
-    beside: Callable[[], Bench], folder: Path
+    beside: Callable[[], Bench], folder: Path, ends: str
 ) -> None:
     sketch, model = folder / "dam.skt", folder / "model.sdl"
     before = (ROOT / "examples/sketch/dam.skt").read_text(encoding="utf-8")
-    sketch.write_text(before, encoding="utf-8")
+    before = before.replace("! A gravity", "! \N{GREEK SMALL LETTER RHO} \U0001d70c A gravity")
+    sketch.write_text(before, encoding="utf-8", newline=ends)
     model.write_text(MAST, encoding="utf-8")
     b = beside()
 
@@ -279,4 +281,5 @@ def test_a_drag_writes_into_the_file_that_states_the_number(
     assert texts() == after
     b.until(lambda: (b.param("dam.CREST"), b.param("lift")) == (crest, lift))
     b.page.keyboard.press("Control+s")
-    b.until(lambda: [model.read_text(), sketch.read_text()] == after)
+    saved = after[1].replace("\n", ends).encode()
+    b.until(lambda: (model.read_text(), sketch.read_bytes()) == (after[0], saved))
