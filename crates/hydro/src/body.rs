@@ -66,6 +66,8 @@ pub struct BodyMeasures<T> {
     pub volume: T,
     /// Centre of the volume.
     pub centroid: Vec3<T>,
+    /// The volume of an open skin is that of the cone from this point.
+    pub middle: Vec3,
     /// Estimates of the errors of area and volume.
     pub bounds: [f64; 2],
     /// The largest component of the integral of the normal: zero for a closed skin.
@@ -253,6 +255,7 @@ impl<T: Real> Body<T> {
                 area_centre: zero,
                 volume: t,
                 centroid: zero,
+                middle: centre,
                 bounds: [0.0; 2],
                 open: 0.0,
             };
@@ -282,6 +285,7 @@ impl<T: Real> Body<T> {
             area_centre: about(area_moment, sums.wetted) + Vec3::lifted(centre),
             volume,
             centroid: about(moment, volume) + Vec3::lifted(centre),
+            middle: centre,
             bounds: [errors[2] + fit[2], errors[0] + fit[0]],
             open: open.into_iter().fold(0.0, f64::max),
         }

@@ -45,6 +45,12 @@ pub fn write(brep: &Brep, header: &IgesHeader<'_>) -> Result<Vec<u8>, WriteError
             file.add(116, 0, "00000000", &style, &fields);
         }
     }
+    // The functions of levels: their names.
+    for (k, level) in file.levels.clone().iter().enumerate() {
+        let style = Style { level: k + 1, ..Style::default() };
+        let fields = ["2".to_string(), "0".to_string(), string(level)];
+        file.add(406, 3, "00000200", &style, &fields);
+    }
     Ok(file.finished(brep, header))
 }
 
@@ -213,7 +219,7 @@ impl File {
             && doubly_closed(cycle)
         {
             // The loop consists of two seams alone: the face is all of the surface.
-            let fields = [number, 0, 0].map(|x| x.to_string());
+            let fields = [number, 0, 0, 0].map(|x| x.to_string());
             self.add(144, 0, "00000000", &style, &fields);
             return;
         }

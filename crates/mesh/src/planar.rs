@@ -40,20 +40,12 @@ pub fn planar_triangles(
     loops: &[Vec<usize>],
     inner: &[usize],
 ) -> Vec<[usize; 3]> {
-    triangles(points, loops, &[], inner)
+    planar_triangles_along(points, loops, &[], inner)
 }
 
 /// As [`planar_triangles`], with `lines` inside the region as edges of triangles; empty, too, if one of them crosses another
 /// one or an edge of a loop.
 pub fn planar_triangles_along(
-    points: &[[f64; 2]],
-    loops: &[Vec<usize>],
-    lines: &[[usize; 2]],
-) -> Vec<[usize; 3]> {
-    triangles(points, loops, lines, &[])
-}
-
-fn triangles(
     points: &[[f64; 2]],
     loops: &[Vec<usize>],
     lines: &[[usize; 2]],

@@ -469,7 +469,7 @@ fn divided(
         let points: Vec<[f64; 2]> = numbers.iter().map(flat).collect();
         let outline = [rim.iter().map(|&v| number(v)).collect()];
         let stretches: Vec<[usize; 2]> = lines.iter().map(|line| line.map(number)).collect();
-        let made = planar_triangles_along(&points, &outline, &stretches);
+        let made = planar_triangles_along(&points, &outline, &stretches, &[]);
         if made.is_empty() {
             return Err(NotUnited::Touching(vertices.given[rim[0] as usize]));
         }

@@ -54,11 +54,11 @@ impl Fineness {
         let reach = (half * half + b01 * b01).sqrt();
         let k = [(mean + reach).abs(), (mean - reach).abs()];
         let (most, least) = (k[0].max(k[1]), k[0].min(k[1]));
-        // The errors of both directions add up.
-        let share = if most > 0.0 { 1.0 + least / most } else { 1.0 };
+        // The errors of both directions add up; so do those of the volume, which is less for its area.
+        let both = if most > 0.0 { least / most } else { 0.0 };
         let side = |k: f64| {
-            let by_angle = self.angle / (k * share.sqrt());
-            by_angle.min((8.0 * self.chord / (k * share)).sqrt()).min(self.side)
+            let by_angle = self.angle / (k * (1.0 + 2.0 * both).sqrt());
+            by_angle.min((8.0 * self.chord / (k * (1.0 + both))).sqrt()).min(self.side)
         };
         let sides = k.map(side);
         let short = sides[0].min(sides[1]);

@@ -89,6 +89,8 @@ pub(crate) struct Draft<'g> {
     /// False for a hidden surface with a visible image.
     pub meshed: bool,
     pub reversed: bool,
+    /// True for a face of a cavity.
+    pub cavity: bool,
     /// The least divisions along u and v where panels are to be near to surfaces, in place of stated ones.
     pub fine: Option<[u32; 2]>,
 }
@@ -158,6 +160,7 @@ pub(crate) fn drafts<'g>(
             image: None,
             meshed,
             reversed,
+            cavity: is_cavity(graph, object),
             fine,
         })
     };
@@ -208,6 +211,7 @@ pub(crate) fn drafts<'g>(
                 image: None,
                 meshed: false,
                 reversed: false,
+                cavity: false,
                 fine: finer.is_some().then_some([border_curve.usual, 1]),
             });
         }
@@ -221,13 +225,20 @@ fn reversed(graph: &Graph<f64>, object: &Object<f64>) -> bool {
     let mut turned = false;
     let mut at = Some(object);
     while let Some(object) = at {
-        turned ^= object.head.orientation == 1;
+        turned ^= object.head.reversed();
         at = surface_of(object).and_then(|s| s.image_of()).and_then(|(key, turns)| {
             turned ^= turns;
             graph.get(key)
         });
     }
     turned
+}
+
+/// True for a face of a cavity, and for an image of one.
+fn is_cavity(graph: &Graph<f64>, object: &Object<f64>) -> bool {
+    let image = surface_of(object).and_then(|s| s.image_of());
+    let original = image.and_then(|(key, _)| graph.get(key));
+    object.head.cavity() || original.is_some_and(|original| is_cavity(graph, original))
 }
 
 /// The map of an image: its kind and its arguments other than the original.

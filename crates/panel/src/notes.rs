@@ -112,6 +112,13 @@ pub enum PanelNote {
         /// The tolerance.
         tolerance: f64,
     },
+    /// Triangles of a sheet without stated divisions that miss more of its area than promised.
+    MissedArea {
+        /// The sheet.
+        patch: String,
+        /// The area of the triangles, and that of the sheet.
+        area: [f64; 2],
+    },
     /// Triangles of a body that no tolerance divides, and that are not its surface.
     Undivided {
         /// The body.
@@ -136,7 +143,9 @@ impl PanelNote {
             PanelNote::PartEnds { .. } => "part-not-named",
             PanelNote::Border { .. } => "border-not-joined",
             PanelNote::Knuckle { .. } => "knuckle-across-panels",
-            PanelNote::Coarse { .. } | PanelNote::Undivided { .. } => "coarse-panels",
+            PanelNote::Coarse { .. }
+            | PanelNote::MissedArea { .. }
+            | PanelNote::Undivided { .. } => "coarse-panels",
         }
     }
 
@@ -148,6 +157,7 @@ impl PanelNote {
                 | PanelNote::Border { .. }
                 | PanelNote::Knuckle { .. }
                 | PanelNote::Coarse { .. }
+                | PanelNote::MissedArea { .. }
                 | PanelNote::Undivided { .. }
         )
     }
@@ -208,6 +218,9 @@ impl PanelNote {
             PanelNote::Coarse { .. } => {
                 "a larger tolerance, or two surfaces that meet at the knuckle, the pole or the end of the fold"
             }
+            PanelNote::MissedArea { .. } => {
+                "give its neighbours more divisions, or state `rim`, `nu` and `nv`; `.area` is that of the surface"
+            }
             PanelNote::Undivided { .. } => {
                 "a greater depth of a set makes finer triangles; files of exact faces, such as STEP, need none"
             }
@@ -225,6 +238,7 @@ impl PanelNote {
             | PanelNote::Border { patch, .. }
             | PanelNote::Knuckle { patch, .. }
             | PanelNote::Coarse { patch, .. }
+            | PanelNote::MissedArea { patch, .. }
             | PanelNote::Undivided { patch, .. } => Some(patch),
             PanelNote::Apart { patches, .. } => Some(&patches[1]),
             PanelNote::Junction { patches, .. } | PanelNote::Unjoined { patches, .. } => {
@@ -353,6 +367,11 @@ impl std::fmt::Display for PanelNote {
             PanelNote::Coarse { patch, distance, tolerance } => write!(
                 f,
                 "panels of `{patch}` are {distance:.2e} from the surface, farther than the tolerance {tolerance:.2e}"
+            ),
+            PanelNote::MissedArea { patch, area: [panels, surface] } => write!(
+                f,
+                "the triangles of `{patch}` have an area of {panels:.6e}, {:+.1e} of that of the surface, {surface:.6e}",
+                (panels - surface) / surface
             ),
             PanelNote::Undivided { patch, missed: [area, volume] } => write!(
                 f,

@@ -67,7 +67,7 @@ impl Orientation {
     /// For each patch, true if its panels are opposite to its natural normal.
     ///
     /// Neighbours face alike, as the first of them says; a closed body faces outward: its volume is
-    /// positive, however thin it is. Open ones keep their sides towards one another and face outward together: the cone
+    /// positive, however thin it is; a cavity faces inward. Open ones keep their sides towards one another and face outward together: the cone
     /// from the middle of their rims (in the planes that close them) is positive. Nearly flat ones face as their surfaces
     /// say.
     pub fn turned(
@@ -90,13 +90,19 @@ impl Orientation {
             sum.0 += if stated(patch) { -volume } else { volume };
             sum.1 += size;
         }
-        let inward = |patch: usize| {
+        let mut cavity = vec![false; patches.len() + 1];
+        for (patch, _) in patches.iter().enumerate().filter(|(_, f)| f.meshed && f.cavity) {
+            // Open ones have no inside.
+            let body = self.body(patch);
+            cavity[body] |= body < patches.len();
+        }
+        let wrongly = |patch: usize| {
             let body = self.body(patch);
             let flat = if body < patches.len() { NO_VOLUME } else { NEARLY_FLAT };
             let (volume, size) = cones[body];
-            volume < -flat * size
+            (if cavity[body] { -volume } else { volume }) < -flat * size
         };
-        (0..patches.len()).map(|patch| stated(patch) != inward(patch)).collect()
+        (0..patches.len()).map(|patch| stated(patch) != wrongly(patch)).collect()
     }
 
     /// True for a patch of a body without a rim.

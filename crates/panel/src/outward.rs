@@ -13,10 +13,13 @@ pub(crate) struct SewnPart {
     pub counts: bool,
     /// True for faces divided as a grid.
     pub whole: bool,
+    /// True for a face of a cavity.
+    pub cavity: bool,
 }
 
-/// For each member, true if it is of a closed body of whole and other faces that faces inward.
-pub(crate) fn faces_inward(
+/// For each member, true if it is of a closed body of whole and other faces that faces inward, or of a cavity that
+/// faces outward.
+pub(crate) fn faces_wrongly(
     topology: &Topology,
     positions: &[Vec3],
     members: &[SewnPart],
@@ -42,11 +45,12 @@ pub(crate) fn faces_inward(
     let body: Vec<usize> = (0..members.len()).map(|k| bodies.find(k)).collect();
     let mut closed = vec![true; members.len()];
     open.into_iter().for_each(|k| closed[body[k]] = false);
-    let mut whole = vec![false; members.len()];
+    let (mut whole, mut cavity) = (vec![false; members.len()], vec![false; members.len()]);
     let mut cones = vec![(0.0, 0.0); members.len()];
     let mut apex: Vec<Option<Vec3>> = vec![None; members.len()];
     for (k, member) in members.iter().enumerate().filter(|(_, member)| member.counts) {
         whole[body[k]] |= member.whole;
+        cavity[body[k]] |= member.cavity;
         for face in &topology.faces()[member.faces.clone()] {
             let corners = face.map(|v| positions[v as usize]);
             let from = *apex[body[k]].get_or_insert(corners[0]);
@@ -56,9 +60,12 @@ pub(crate) fn faces_inward(
             cones[body[k]].1 += cone.abs();
         }
     }
-    let inward = |k: usize| {
+    let wrongly = |k: usize| {
         let (volume, size) = cones[body[k]];
-        members[k].counts && closed[body[k]] && whole[body[k]] && volume < -NO_VOLUME * size
+        let inward = if cavity[body[k]] { -volume } else { volume };
+        // Trimmed faces alone face as they are stated.
+        let decides = whole[body[k]] || cavity[body[k]];
+        members[k].counts && closed[body[k]] && decides && inward < -NO_VOLUME * size
     };
-    (0..members.len()).map(inward).collect()
+    (0..members.len()).map(wrongly).collect()
 }

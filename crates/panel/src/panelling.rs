@@ -16,7 +16,7 @@ use crate::identity::Identities;
 use crate::joined_patches::JoinedPatches;
 use crate::knuckles::is_creased;
 use crate::notes::PanelNote;
-use crate::outward::{SewnPart, faces_inward};
+use crate::outward::{SewnPart, faces_wrongly};
 use crate::patch_values::{PatchValues, evaluated_all, names};
 use crate::roots::RootTable;
 use crate::topology::{self, Counts, EdgeRun, Nominal, PanelTopology, PatchTopology};
@@ -275,12 +275,13 @@ impl Panelling {
         made.facing_outward(graph)
     }
 
-    /// The same with closed bodies of whole and trimmed faces turned outward.
+    /// The same with closed bodies of whole and trimmed faces turned outward, and cavities inward.
     fn facing_outward(mut self, graph: &Graph<f64>) -> Result<Self, CallError> {
         let frames = self.structure.patches.iter().enumerate().filter(|(_, frame)| frame.meshed);
         let frames: Vec<usize> = frames.map(|(patch, _)| patch).collect();
         let is_open = |&patch: &usize| !self.joined.orientation.is_closed(patch);
-        if !self.bodies.iter().any(MeshedBody::is_sewn) || !frames.iter().any(is_open) {
+        let decides = frames.iter().any(is_open) || self.bodies.iter().any(|body| body.cavity);
+        if !self.bodies.iter().any(MeshedBody::is_sewn) || !decides {
             return Ok(self);
         }
         let Some(own) = self.body_points(graph, &self.points) else { return Ok(self) };
@@ -290,24 +291,25 @@ impl Panelling {
             faces: at.faces.clone(),
             counts: is_open(patch),
             whole: true,
+            cavity: self.structure.patches[*patch].cavity,
         });
         let mut next = frames.len();
         let trimmed = self.bodies.iter().map(|body| {
             let first = next;
             next += body.facets.groups.len().max(1);
             let faces = patches[first].faces.start..patches[next - 1].faces.end;
-            SewnPart { faces, counts: body.is_sewn(), whole: false }
+            SewnPart { faces, counts: body.is_sewn(), whole: false, cavity: body.cavity }
         });
         let members: Vec<SewnPart> = whole.chain(trimmed).collect();
-        let inward = faces_inward(&self.topology, &positions, &members);
-        if !inward.contains(&true) {
+        let wrong = faces_wrongly(&self.topology, &positions, &members);
+        if !wrong.contains(&true) {
             return Ok(self);
         }
         let mut round = vec![false; self.structure.patches.len()];
-        frames.iter().zip(&inward).for_each(|(patch, inward)| round[*patch] = *inward);
+        frames.iter().zip(&wrong).for_each(|(patch, wrong)| round[*patch] = *wrong);
         let mut bodies = self.bodies.to_vec();
-        for (body, inward) in bodies.iter_mut().zip(&inward[frames.len()..]) {
-            body.reversed ^= inward;
+        for (body, wrong) in bodies.iter_mut().zip(&wrong[frames.len()..]) {
+            body.reversed ^= wrong;
         }
         let too_many = |e: MeshError| CallError::new("too-many-panels", e.to_string());
         let joined = self.joined.turned_round(&self.structure, &round).map_err(too_many)?;

@@ -78,6 +78,8 @@ pub(crate) struct PatchTopology {
     pub conformal: bool,
     /// True if its panels are opposite to its natural normal, by the declaration of its surface.
     pub reversed: bool,
+    /// True for a face of a cavity.
+    pub cavity: bool,
     /// False for a hidden surface with a visible image, and for a hem.
     pub meshed: bool,
     /// For a hem, which of its sheet's.
@@ -628,6 +630,7 @@ impl TopologySolver<'_, '_> {
                 knuckles: across.then(|| draft.knuckles.clone()),
                 conformal: across,
                 reversed: draft.reversed,
+                cavity: draft.cavity,
                 meshed: draft.meshed,
                 border_curve: draft.border_curve.as_ref().map(|h| h.index),
             });

@@ -24,6 +24,8 @@ pub(crate) struct MeshedBody {
     pub colour: i32,
     pub tags: Vec<Arc<str>>,
     pub reversed: bool,
+    /// True for a face of a cavity.
+    pub cavity: bool,
     pub facets: Arc<TriangleBody<f64>>,
     /// The parameters of the divisions of its border, curve by curve; empty without a border.
     pub divided: Vec<Vec<f64>>,
@@ -56,7 +58,8 @@ pub(crate) fn bodies(
                 kind: object.row.name.as_ref().into(),
                 colour: object.head.colour,
                 tags: object.head.panels.as_ref().map_or(Vec::new(), |p| p.tags.clone()),
-                reversed: object.head.orientation == 1,
+                reversed: object.head.reversed(),
+                cavity: object.head.cavity(),
                 facets: facets.clone(),
                 divided: Vec::new(),
                 border_curves: Vec::new(),
@@ -110,6 +113,7 @@ pub(crate) fn sewn(
         if let Some(divisions) = body.divide(object, &border_curves, known, same) {
             remarks.push(PanelNote::Border { patch: body.name.to_string(), divisions });
         }
+        remarks.extend(body.missed_area());
         body.vertices = vec![u32::MAX; body.facets.points.len()];
         let numbers = |patch: usize| joined.vertices[patch].iter().step_by(2).copied();
         let mut pending = Vec::new();
@@ -179,6 +183,15 @@ impl MeshedBody {
     /// True when its border is divided like that of its neighbours.
     pub fn is_sewn(&self) -> bool {
         !self.border_curves.is_empty()
+    }
+
+    /// The note of a sheet that misses more of its area than promised.
+    fn missed_area(&self) -> Option<PanelNote> {
+        let border = &self.facets.border.as_ref().filter(|_| self.finer.is_none())?.0;
+        let promise = border.promised()?;
+        let area = [self.facets.of_triangles.area, border.measures()?.area];
+        let misses = (area[0] - area[1]).abs() > promise * area[1];
+        misses.then(|| PanelNote::MissedArea { patch: self.name.to_string(), area })
     }
 
     /// The note of a body whose triangles miss its measures and that has no border to be divided by.

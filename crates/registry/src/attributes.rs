@@ -114,7 +114,8 @@ pub struct Attributes {
     pub divisions: [u32; 2],
     /// Subdivisions of each division: finer tabulation between panel edges.
     pub subdivisions: [u32; 2],
-    /// 1 when the normal of the panels is opposite to the natural one.
+    /// 1 when the normal of the panels is opposite to the natural one, plus 2 for a face of a cavity; see
+    /// [`Self::reversed`] and [`Self::cavity`].
     pub orientation: i32,
     /// Attributes of a model file, such as `A:Note(port side)`, stored unchanged.
     pub attributes: Option<Arc<str>>,
@@ -168,7 +169,12 @@ pub const ATTRIBUTES: [FieldSpec; 10] = [
             DefaultValue::Unset,
         )
     },
-    head("orientation", "1 reverses the normals of a surface's panels.", DefaultValue::Unset),
+    head(
+        "orientation",
+        "1 reverses the normals of a surface's panels; 2: the closed body of which it is a face is a cavity, whose \
+         panels face inward; 3: both.",
+        DefaultValue::Unset,
+    ),
     FieldSpec {
         class: Class::Text,
         ..head("attributes", "Attributes of a model file, stored unchanged.", DefaultValue::Unset)
@@ -196,6 +202,16 @@ impl Attributes {
             divided: false,
             panels: None,
         }
+    }
+
+    /// True when the normal of the panels is opposite to the natural one.
+    pub fn reversed(&self) -> bool {
+        self.orientation & 1 != 0
+    }
+
+    /// True for a face of a cavity.
+    pub fn cavity(&self) -> bool {
+        self.orientation & 2 != 0
     }
 
     /// True when the object is displayed and panelled.
@@ -281,7 +297,7 @@ impl Attributes {
                 let tags = tags(value)?;
                 Arc::make_mut(self.panels.get_or_insert_default()).tags = tags;
             }
-            "orientation" => self.orientation = whole(0.0, 1.0, value)? as i32,
+            "orientation" => self.orientation = whole(0.0, 3.0, value)? as i32,
             "attributes" => match value {
                 Value::Text(text) => self.attributes = Some(text.clone()),
                 other => return Err(CallError::wrong_class(Class::Text, other.class())),

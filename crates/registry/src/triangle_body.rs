@@ -83,6 +83,10 @@ pub trait TriangulatedBorder<T: Real>: Send + Sync {
     /// The measures of the part of the surface itself, which its triangles only come near.
     fn measures(&self) -> Option<SheetMeasures<T>>;
 
+    /// Maximum relative difference of area between the triangles and the part of the surface, where divisions
+    /// are not stated; `None` where they are.
+    fn promised(&self) -> Option<f64>;
+
     /// The border with triangles as near to the surface as this, in place of stated divisions.
     ///
     /// # Errors

@@ -286,6 +286,7 @@ def _imported(answer: dict[str, Any], metres: float) -> Imported:
             face["reversed"],
             tuple(face["tags"]),
             None if face["colour"] is None else tuple(face["colour"]),
+            face["cavity"],
         )
         for face in answer["faces"]
     ]
@@ -326,6 +327,7 @@ def _sent_content(found: Imported) -> dict[str, Any]:
             "reversed": bool(face.reversed),
             "tags": list(face.tags),
             "colour": face.colour,
+            "cavity": face.cavity,
         }
         for face in found.faces
     ]

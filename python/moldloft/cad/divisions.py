@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
 
-__all__ = ["divisions"]
+__all__ = ["cone_volume", "divisions"]
 
 _TURN = 0.07
 """The largest turn along a panel, in radians: that of trimmed faces."""
@@ -28,6 +28,9 @@ _LEAST, _MOST = 8, 500
 
 _PLACES, _LINES = 97, 5
 """Number of points along a line of the surface, and of lines, at which the turn is measured."""
+
+_NODES = 10
+"""Gauss nodes between two knots."""
 
 _KINK = 0.5
 """Turn between two points, in radians, above which it is a kink."""
@@ -71,6 +74,34 @@ def divisions(faces: list[ImportedFace], finer: Mapping[str, float]) -> dict[str
     return {
         face.name: (counts[first(2 * k)], counts[first(2 * k + 1)]) for k, face in enumerate(whole)
     }
+
+
+def cone_volume(surface: Nurbs) -> float:
+    """The volume of the cone from the origin to a whole surface, to about 1e-7.
+
+    Parameters
+    ----------
+    surface
+        The surface.
+    """
+    nodes, weights = np.polynomial.legendre.leggauss(_NODES)
+    apart = nodes[:, None] - nodes[None, :] + np.eye(_NODES)
+    scale = apart.prod(axis=1)
+    slopes = scale[:, None] / (scale[None, :] * apart)
+    np.fill_diagonal(slopes, (1 / apart).sum(axis=1) - 1)
+    places, steps = [], []
+    for knots in surface.knots:
+        ends = np.unique(np.asarray(knots))
+        ends = (ends - ends[0]) / (ends[-1] - ends[0])
+        steps.append(np.diff(ends) / 2)
+        places.append((ends[:-1, None] + steps[-1][:, None] * (1 + nodes)).ravel())
+    u, v = np.meshgrid(*places, indexing="ij")
+    points = surface(u, v).reshape(len(steps[0]), _NODES, len(steps[1]), _NODES, 3)
+    # The steps of the parameters cancel out.
+    along_u = np.einsum("ki,aibjx->akbjx", slopes, points)
+    along_v = np.einsum("kj,aibjx->aibkx", slopes, points)
+    cones = (points * np.cross(along_u, along_v)).sum(axis=-1)
+    return float(np.einsum("aibj,i,j->", cones, weights, weights)) / 3
 
 
 def _count(surface: Nurbs, along: int) -> int:

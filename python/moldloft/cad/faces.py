@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
 import numpy as np
@@ -19,6 +19,7 @@ __all__ = [
     "align",
     "border",
     "is_whole",
+    "part_seams",
 ]
 
 
@@ -53,6 +54,8 @@ class ImportedFace:
     """The products that it is in, from the outermost one, and its body."""
     colour: tuple[float, float, float] | None = None
     """sRGB, 0 to 1, of the face or of a shape that contains it."""
+    cavity: bool = False
+    """True if it bounds a cavity of a solid."""
 
     @property
     def sides(self) -> list[ImportedSide]:
@@ -147,6 +150,40 @@ def border(trace: Nurbs) -> str:
             if np.abs(trace.points[:, k] - end).max() < 1e-9:
                 return f"{letter}{end}"
     return ""
+
+
+_CLOSED = 1e-9
+"""Distance of two borders, relative to the size of the surface, within which they are one line."""
+
+
+def part_seams(face: ImportedFace) -> None:
+    """Gives the two sides of a face along its seam the two borders of a closed surface.
+
+    A curve in space does not say on which of them it is, so that both sides may have the same.
+
+    Parameters
+    ----------
+    face
+        The face; paths of its sides are replaced.
+    """
+    taken = {border(side.trace) for side in face.sides}
+    first: dict[tuple[int, str], None] = {}
+    net = face.surface.points
+    size = float(np.ptp(net.reshape(-1, 3), axis=0).max())
+    for cycle in face.loops:
+        for k, side in enumerate(cycle):
+            at = border(side.trace)
+            if not at or (side.edge, at) not in first:
+                first[side.edge, at] = None
+                continue
+            axis = "uv".index(at[0])
+            other = f"{at[0]}{1 - int(at[1])}"
+            ends = np.take(net, 0, axis=axis) - np.take(net, -1, axis=axis)
+            if other in taken or np.abs(ends).max() > _CLOSED * size:
+                continue
+            points = side.trace.points.copy()
+            points[:, axis] = 1.0 - points[:, axis].round()
+            cycle[k] = side._replace(trace=replace(side.trace, points=points))
 
 
 def is_whole(trace: Nurbs) -> bool:

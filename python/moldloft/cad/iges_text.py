@@ -22,6 +22,8 @@ class IgesText:
     """Names of faces by number: empty, since OCCT provides them."""
     resolution: float = 0.0
     """Resolution of the file in metres; 0 if it states no resolution."""
+    levels: dict[int, str] = field(default_factory=dict)
+    """Names of levels by number."""
 
     @classmethod
     def of(cls, path: object, text: str) -> IgesText:
@@ -60,6 +62,11 @@ class IgesText:
         }
 
         _check_numbers(path, listed, fields)
+        forms = _forms(sections["D"])
+        for n, (kind, first, count) in listed.items():
+            if kind == 406 and forms[n][0] == 3:
+                held = given[first - 1 : first - 1 + count]
+                made.levels[forms[n][1]] = _string("".join(line[:64] for line in held))
         faces = [n for n, (kind, _, _) in listed.items() if kind == 144]
         hurt = [n for n in faces if not _there(n, listed, fields)]
         if not whole:
@@ -130,6 +137,20 @@ def _directory(lines: list[str]) -> dict[int, tuple[int, int, int]]:
         count = max(_whole_number(other[24:32]), 1)
         found[k + 1] = _whole_number(one[:8]), _whole_number(one[8:16]), count
     return found
+
+
+def _forms(lines: list[str]) -> dict[int, tuple[int, int]]:
+    """Form and level, by number."""
+    pairs = range(0, len(lines) - 1, 2)
+    return {
+        k + 1: (_whole_number(lines[k + 1][32:40]), _whole_number(lines[k][32:40])) for k in pairs
+    }
+
+
+def _string(text: str) -> str:
+    """The first string of an entity's parameters."""
+    found = re.search(r"[,;]\s*(\d+)H", text)
+    return text[found.end() : found.end() + int(found[1])] if found else ""
 
 
 _EXPONENT = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)[EeDd]\+?\d{2,}")

@@ -14,7 +14,7 @@ import numpy as np
 from moldloft.arguments import explain
 from moldloft.budget import within_limits
 from moldloft.cad.apart import read
-from moldloft.cad.divisions import divisions
+from moldloft.cad.divisions import cone_volume, divisions
 from moldloft.cad.faces import Imported, ImportedFace, align
 from moldloft.cad.joining import joins
 from moldloft.cad.placing import components, control, placing_of
@@ -171,14 +171,13 @@ def _loadable(found: Imported, name: str, units: str) -> tuple[str, Model]:
             model.mesh()
         faults = [d for d in model.diagnostics if d.is_error]
         if not faults:
-            missed = _missed_areas(found, model)
-            if not missed or any(finer.get(face, 1.0) >= _FINEST for face in missed):
-                found.remarks += [remark for _, remark in missed.values()]
-                found.remarks += _inward(model)
+            shares, missed = _missed(found, model)
+            if not shares or any(finer.get(face, 1.0) >= _FINEST for face in shares):
+                found.remarks += missed + _inward(model)
                 return text, model
-            for name_of, (share, _) in missed.items():
+            for name_of, share in shares.items():
                 # What a panel misses is as the square of its size.
-                factor = finer.get(name_of, 1.0) * max(1.2, (1.2 * share / _AREA_PROMISE) ** 0.5)
+                factor = finer.get(name_of, 1.0) * max(1.2, (1.2 * share / _PROMISE) ** 0.5)
                 finer[name_of] = min(factor, _FINEST)
             continue
         words = set().union(*(_blamed(d, text) for d in faults))
@@ -199,32 +198,70 @@ def _loadable(found: Imported, name: str, units: str) -> tuple[str, Model]:
     raise FileError(f"cannot read `{name}`: what was read of it makes no model: {faults[0]}")
 
 
-_AREA_PROMISE = 1e-3
-"""Largest relative difference between the area of a face's panels and that of the face."""
+_PROMISE = 1e-3
+"""Largest relative difference of area between a face's panels and the face, and of volume."""
 
+_EXACT = 1e-5
+"""Relative difference of area below which a face is not the cause of a missed volume."""
+
+
+_FAR = 1e-4
+"""Volume, relative to the cones from the origin to the faces, below which these do not give it."""
 
 _FINEST = 16.0
 """Largest factor of the divisions of a whole face."""
 
 
-def _missed_areas(found: Imported, model: Model) -> dict[str, tuple[float, str]]:
-    """Whole faces whose panels miss more of the area than promised."""
-    missed = {}
+def _missed(found: Imported, model: Model) -> tuple[dict[str, float], list[str]]:
+    """Whole faces that need more divisions, with what is missed, and remarks on what is missed."""
     try:
-        patches = {patch.name: patch for patch in model.mesh().patches}
+        mesh = model.mesh()
     except Error:
-        return {}
+        return {}, []
+    patches = {patch.name: patch for patch in mesh.patches}
+    beside: dict[int, set[str]] = {}
     for face in found.faces:
-        if not face.natural or face.name not in patches:
+        for side in face.sides if face.natural else ():
+            beside.setdefault(side.edge, set()).add(face.name)
+    shares: dict[str, float] = {}
+    by_face: dict[str, float] = {}
+    said = []
+    for face in found.faces:
+        if face.name not in patches:
             continue
         area, panels = model[face.name].area, patches[face.name].area
-        if abs(panels - area) > _AREA_PROMISE * area:
-            remark = (
-                f"panels of `{face.name}` have an area of {panels:.6g}, {panels / area - 1:+.1e} "
-                f"of that of the face, {area:.6g}: state finer `divisions`, or a tolerance"
-            )
-            missed[face.name] = (abs(panels / area - 1), remark)
-    return missed
+        share = by_face[face.name] = abs(panels / area - 1) if area else 0.0
+        if share <= _PROMISE:
+            continue
+        said.append(
+            f"panels of `{face.name}` have an area of {panels:.6g}, {panels / area - 1:+.1e} "
+            f"of that of the face, {area:.6g}: state finer `divisions`, or a tolerance"
+        )
+        # The rim of a trimmed face has the divisions of its whole neighbours.
+        around = set().union(*(beside.get(side.edge, ()) for side in face.sides))
+        for name in [face.name] if face.natural else around:
+            shares[name] = max(shares.get(name, 0.0), share)
+    if not mesh.closed or len(by_face) < len(found.faces):
+        return shares, said
+    cones = {
+        face.name: cone_volume(face.surface) if face.natural else model[face.name].volume
+        for face in found.faces
+    }
+    # The sides are those of the panels.
+    volume = sum(
+        min((cone, -cone), key=lambda x: abs(x - patches[name].volume))
+        for name, cone in cones.items()
+    )
+    share = abs(abs(mesh.volume / volume) - 1) if volume else 0.0
+    if share > _PROMISE and abs(volume) > _FAR * max(map(abs, cones.values())):
+        said.append(
+            f"the panels enclose {abs(mesh.volume):.6g}, {abs(mesh.volume / volume) - 1:+.1e} "
+            f"of the volume {abs(volume):.6g}: state finer `divisions`, or a tolerance"
+        )
+        for face in found.faces:
+            if face.natural and by_face.get(face.name, 0.0) > _EXACT:
+                shares[face.name] = max(shares.get(face.name, 0.0), share)
+    return shares, said
 
 
 def _blamed(fault: Any, text: str) -> set[str]:
@@ -287,7 +324,8 @@ def _text(
 
 def _attributes(face: ImportedFace) -> str:
     """Name, colour and other attributes of a face, as the end of its statement."""
-    text = ", orientation = 1" if face.reversed else ""
+    orientation = face.reversed + 2 * face.cavity
+    text = f", orientation = {orientation}" if orientation else ""
     if face.colour is not None:
         text += f", colour = {nearest_colour(face.colour)}"
     if face.tags:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import contextlib
 import io
 import os
-import re
 import sys
 import tempfile
 import zipfile
@@ -29,6 +28,7 @@ from moldloft.cad.faces import (
     ImportedSide,
     border,
     is_whole,
+    part_seams,
 )
 from moldloft.cad.iges_text import IgesText
 from moldloft.cad.part21 import StepText
@@ -228,12 +228,6 @@ def of_part(
         kind = {".igs": "an IGES", ".iges": "an IGES", ".3dm": "a 3DM"}
         what = kind.get(path.suffix.lower(), "a STEP")
         raise FileError(f"cannot read `{path}`: not {what} file that OCCT takes")
-    hollow = 0 if iges else len(re.findall(r"=\s*BREP_WITH_VOIDS\s*\(", text))
-    if hollow:
-        found.remarks.append(
-            f"{hollow} of the file's solids have cavities: here the faces round a cavity bound a "
-            "body of its own, whose volume is added instead of taken away"
-        )
     if not found.count and not found.curves:
         why = "".join(f"; {remark}" for remark in source.remarks)
         raise FileError(f"cannot read `{path}`: it contains no face and no curve{why}")
@@ -248,7 +242,7 @@ def _held(source: StepText | IgesText, metres: float, components: bool) -> tuple
     done = _transferred(source.text.encode("latin-1"), iges, document)
     if not done:
         return found, False
-    named = _Names(document, levels=iges)
+    named = _Names(document, levels=source.levels if isinstance(source, IgesText) else None)
     seen: set[int] = set()
     shapes = _free(document)
     if isinstance(source, IgesText):
@@ -441,9 +435,11 @@ class _Places:
         several: bool,
         inside: Inside,
     ) -> None:
+        from OCP.BRepClass3d import BRepClass3d
         from OCP.TopAbs import TopAbs_FACE, TopAbs_SHELL, TopAbs_SOLID
-        from OCP.TopoDS import TopoDS_Iterator
+        from OCP.TopoDS import TopoDS, TopoDS_Iterator
 
+        self._cavities: set[int] = set()
         self._faces = map_of(sewn.shape, TopAbs_FACE)
         self._found: dict[int, tuple[tuple[str, ...], tuple[float, float, float] | None]] = {}
 
@@ -458,6 +454,11 @@ class _Places:
                 tags = tuple(dict.fromkeys((*path, *layers)))
                 self._found.setdefault(self._faces.FindIndex(shape), (tags, colour))
                 return
+            if kind == TopAbs_SOLID and len(shells := faces_of(shape, TopAbs_SHELL)) > 1:
+                outer = BRepClass3d.OuterShell_s(TopoDS.Solid(shape))
+                for shell in (shell for shell in shells if not shell.IsSame(outer)):
+                    inner = faces_of(shell, TopAbs_FACE)
+                    self._cavities |= {self._faces.FindIndex(face) for face in inner}
             label = named.product(shape)
             known = identifier(label, set()) if label else ""
             if known and known not in path:
@@ -474,6 +475,10 @@ class _Places:
                 parts.Next()
 
         walk(sewn.shape, inside.products, (), inside.colour, False)
+
+    def is_cavity(self, face: Any) -> bool:
+        """True for a face of a shell inside another one of the same solid."""
+        return self._faces.FindIndex(face) in self._cavities
 
     def of(self, face: Any) -> tuple[tuple[str, ...], tuple[float, float, float] | None]:
         """Products, body and layers, and the colour, of a face."""
@@ -506,6 +511,18 @@ class _Converted:
                 # OCCT's own exceptions have no common class here.
                 self._together = BRepBuilderAPI_NurbsConvert(compound, True)
 
+    def fault(self, area: float) -> float:
+        """How far the faces are from a shape of this area without planes, relative to its size."""
+        from OCP.BRep import BRep_Tool
+        from OCP.TopAbs import TopAbs_EDGE
+        from OCP.TopoDS import TopoDS
+
+        if self._together is None or not area:
+            return np.inf
+        made = self._together.Shape()
+        apart = [BRep_Tool.Tolerance_s(TopoDS.Edge(edge)) for edge in faces_of(made, TopAbs_EDGE)]
+        return abs(_curved_area(made) / area - 1) + max(apart, default=0.0) / area**0.5
+
     def takes(self, part: Any) -> bool:
         """True if OCCT can convert a face."""
         if self._together is not None or _is_own(part):
@@ -533,6 +550,19 @@ class _Converted:
             number = self.edges.FindIndex(edge) or self.edges.Add(edge)
             own.add(convert.ModifiedShape(edge), number)
         return TopoDS.Face(convert.ModifiedShape(part)), own
+
+
+def _curved_area(shape: Any) -> float:
+    """The area of the faces of a shape that are not on planes."""
+    from OCP.BRepGProp import BRepGProp
+    from OCP.GProp import GProp_GProps
+    from OCP.TopAbs import TopAbs_FACE
+
+    area = GProp_GProps()
+    for face in faces_of(shape, TopAbs_FACE):
+        if not _is_own(face):
+            BRepGProp.SurfaceProperties_s(face, area)
+    return float(area.Mass())
 
 
 def _is_own(face: Any) -> bool:
@@ -566,6 +596,8 @@ def _shape_faces(
     sewn: Sewn, labels: _Labels, places: _Places, divided: bool
 ) -> tuple[list[ImportedFace], int, list[str]]:
     """The faces of a shape, their numbers of edges, and remarks; closed faces may be halved."""
+    from OCP.BRepCheck import BRepCheck_Analyzer
+    from OCP.ShapeFix import ShapeFix_Shape
     from OCP.ShapeUpgrade import ShapeUpgrade_ShapeDivideClosed
     from OCP.TopAbs import TopAbs_FACE, TopAbs_REVERSED
 
@@ -581,6 +613,19 @@ def _shape_faces(
         context = divide.GetContext()
         parts = {k: faces_of(context.Apply(f), TopAbs_FACE) for k, f in enumerate(held)}
     converted = _Converted(whole)
+    if divided and not BRepCheck_Analyzer(whole).IsValid():
+        # OCCT may convert halves that it finds faulty to others, and so may be what it mends.
+        fix = ShapeFix_Shape(whole)
+        with _quiet():
+            fix.Perform()
+        mended = _Converted(fix.Shape())
+        area = _curved_area(sewn.whole)
+        if mended.fault(area) < converted.fault(area):
+            converted, context = mended, fix.Context()
+            parts = {
+                k: [f for half in halves for f in faces_of(context.Apply(half), TopAbs_FACE)]
+                for k, halves in parts.items()
+            }
     faces: list[ImportedFace] = []
     remarks = []
     for k, original in enumerate(originals):
@@ -602,7 +647,9 @@ def _shape_faces(
                 continue
             # The converted face has lost its sense.
             made.reversed = part.Orientation() == TopAbs_REVERSED
+            part_seams(made)
             made.tags, made.colour = places.of(original)
+            made.cavity = places.is_cavity(original)
             faces.append(made)
     uses: dict[int, int] = {}
     for face in faces:
@@ -636,7 +683,7 @@ def _loose_edges(shape: Any) -> list[Any]:
 class _Names:
     """The names, colours and layers of a document's shapes."""
 
-    def __init__(self, document: Any, *, levels: bool = False) -> None:
+    def __init__(self, document: Any, *, levels: dict[int, str] | None = None) -> None:
         from OCP.collections import IndexedMap_TopoDS_Shape_TopTools_ShapeMapHasher as Shapes
         from OCP.collections import Sequence_TDF_Label
         from OCP.TopLoc import TopLoc_Location
@@ -656,9 +703,14 @@ class _Names:
             if colour is not None:
                 self._colours.setdefault(self._shapes.Add(shape.Located(self._nowhere)), colour)
             layers = () if shape.IsNull() else _layers(layer_tool, label)
-            if levels:
+            if levels is not None:
                 # IGES has numbers, 0 for none.
-                layers = tuple(f"level_{number}" for number in layers if number != "0")
+                layers = tuple(
+                    "_".join(levels.get(int(number), "").replace('"', " ").split())
+                    or f"level_{number}"
+                    for number in layers
+                    if number != "0"
+                )
             if layers:
                 self._layers.setdefault(self._shapes.Add(shape.Located(self._nowhere)), layers)
             name = "" if shape.IsNull() else label_name(label)

@@ -231,10 +231,12 @@ impl Document {
             }
             fault
         };
-        // A set or a sketch has cavities, whose patches are those of one object.
+        // A set or a sketch has cavities, whose patches are those of one object; others are stated.
         let own = |inner: &&InnerSkin| {
             let [skin, around] = [inner.patch, inner.around].map(|patch| self.owner(name(patch)));
-            !(inner.cavity && skin.is_some() && skin == around)
+            let stated = skin.and_then(|name| self.graph().get(self.graph().find(name)?));
+            let stated = stated.is_some_and(|object| object.head.cavity());
+            !(inner.cavity && skin.is_some() && (stated || skin == around))
         };
         inner_skins(mesh, &self.mirrors()).iter().filter(own).map(report).collect()
     }

@@ -7,6 +7,7 @@ pub mod builtins;
 mod cgns_files;
 pub mod context;
 pub(crate) mod elementary;
+mod enclosed;
 pub mod files;
 pub(crate) mod format;
 mod grid_checks;

@@ -1,6 +1,7 @@
-//! `area(hull)`, `volume(tank)`, `distance(P, hull)`: functions of sets applied to objects that
+//! `area(hull)`, `volume(tank)`, `volume(side, lid)`, `distance(P, hull)`: functions of sets applied to objects that
 //! have these numbers as members, and distances of points from points, curves and surfaces.
 
+use crate::functions::enclosed;
 use crate::run::interpreter::Interpreter;
 use crate::source::fault_location::unplaced;
 use moldloft_diag::Diagnostic;
@@ -21,12 +22,22 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         match (name, &given.positional[..]) {
             ("area" | "volume", [shape]) => {
                 let key = match shape {
+                    Value::List(items) if name == "volume" => {
+                        return self.shape_measure(
+                            name,
+                            &Given { positional: items.to_vec(), named: Vec::new() },
+                        );
+                    }
                     Value::Surface(surface) => surface.key,
                     Value::Solid(solid) => solid.key,
                     Value::Body(_) => return crate::value::member::of_value(shape, name),
                     _ => None,
                 };
                 crate::value::member::of_patch(self.run.graph().get(key?)?, name)
+            }
+            ("volume", shapes) => {
+                let sides = enclosed::sides(shapes).filter(|sides| sides.len() > 1)?;
+                Some(enclosed::enclosed(&sides).map(Value::Number))
             }
             ("distance", [a, b]) => {
                 let found = match (place(a), place(b)) {

@@ -36,6 +36,7 @@ mod tangent_patch;
 mod translated;
 mod trim;
 mod trim_density;
+mod trim_kinks;
 mod trim_measures;
 mod trim_region;
 

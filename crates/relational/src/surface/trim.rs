@@ -85,6 +85,9 @@ const DIVISIONS: usize = 12;
 /// Maximum number of reductions of the turn until the area is right.
 const MAX_ROUNDS: usize = 6;
 
+/// A finer interior that leaves more than this part of the missed area is not worth its triangles.
+const WORTHWHILE: f64 = 0.8;
+
 /// Maximum number of points in the box of a part that is divided by curvature alone, and of one
 /// with a given fineness.
 const MOST_POINTS: usize = 50_000;
@@ -127,12 +130,13 @@ impl<T: Real> Build<T> for TrimSurf<T> {
                 inside,
                 fineness,
                 most_points: MOST_POINTS,
+                promised: free.then_some(AREA_PROMISE),
                 exact: exact.clone().unwrap_or_default(),
             };
             trimmed.close_loops();
             let at: Vec<Vec<T>> = trimmed.hems.iter().map(divisions).collect();
             let last = !free || round + 1 == MAX_ROUNDS;
-            let mut facets = match trimmed.facets(&at) {
+            let mut facets = match trimmed.facets(&at, &fineness) {
                 Ok((facets, _)) => facets,
                 // Coarse rims may cross where the curves do not.
                 Err(fault) if last => return Err(fault),
@@ -141,17 +145,13 @@ impl<T: Real> Build<T> for TrimSurf<T> {
                     continue;
                 }
             };
-            if free && let Some((measures, _)) = trimmed.exact() {
-                let area = measures.area.re();
-                let missed = (facets.of_triangles.area.re() - area).abs() / area;
-                if missed > AREA_PROMISE && !last && facets.triangles.len() < MOST_POINTS {
-                    fineness.angle *= (0.8 * AREA_PROMISE / missed).sqrt().clamp(0.25, 0.8);
-                    exact = Some(trimmed.exact.clone());
-                    continue;
-                }
-                if missed > AREA_PROMISE {
-                    coarse(context, facets.of_triangles.area.re(), area);
-                }
+            if let Some(missed) = trimmed.missed(&facets)
+                && !last
+                && facets.triangles.len() < MOST_POINTS
+            {
+                fineness.angle *= finer(missed);
+                exact = Some(trimmed.exact.clone());
+                continue;
             }
             facets.border = Some(Border(Arc::new(trimmed)));
             return Ok(Value::Body(Arc::new(facets)));
@@ -160,13 +160,9 @@ impl<T: Real> Build<T> for TrimSurf<T> {
     }
 }
 
-fn coarse(context: &Context, panels: f64, area: f64) {
-    let share = (panels - area) / area;
-    context.remark(
-        "coarse-panels",
-        format!("the triangles have an area of {panels:.6e}, {share:+.1e} of that of the surface, {area:.6e}"),
-        "state `rim`, `nu` and `nv`, or look for loops that nearly touch; `.area` is that of the surface",
-    );
+/// The factor of the turn by which triangles that miss so much of the area come to the promise.
+fn finer(missed: f64) -> f64 {
+    (0.8 * AREA_PROMISE / missed).sqrt().clamp(0.25, 0.8)
 }
 
 /// Accuracy of the panels for given curves.
@@ -245,6 +241,8 @@ struct Trimmed<T: Real> {
     inside: Option<[usize; 2]>,
     fineness: Fineness,
     most_points: usize,
+    /// The promise of [`TriangulatedBorder::promised`].
+    promised: Option<f64>,
     /// Its measures and an estimate of their error, computed on first use.
     exact: OnceLock<Option<(SheetMeasures<T>, f64)>>,
 }
@@ -263,7 +261,24 @@ impl<T: Real> TriangulatedBorder<T> for Trimmed<T> {
     }
 
     fn divided(&self, at: &[Vec<T>]) -> Option<(TriangleBody<T>, Vec<Vec<u32>>)> {
-        self.facets(at).ok()
+        let mut fineness = self.fineness;
+        let (mut made, mut rims) = self.facets(at, &fineness).ok()?;
+        // The vertices of the border are given: only the interior can be finer.
+        while let Some(missed) = self.missed(&made)
+            && made.triangles.len() < MOST_POINTS
+        {
+            fineness.angle *= finer(missed);
+            let Ok((next, next_rims)) = self.facets(at, &fineness) else { break };
+            if self.missed(&next).is_some_and(|m| m > WORTHWHILE * missed) {
+                break;
+            }
+            (made, rims) = (next, next_rims);
+        }
+        Some((made, rims))
+    }
+
+    fn promised(&self) -> Option<f64> {
+        self.promised
     }
 
     fn measures(&self) -> Option<SheetMeasures<T>> {
@@ -279,6 +294,7 @@ impl<T: Real> TriangulatedBorder<T> for Trimmed<T> {
             inside: None,
             fineness: *fineness,
             most_points: MOST_FINE_POINTS,
+            promised: None,
             exact: self.exact.clone(),
         };
         finer.close_loops();
@@ -332,8 +348,20 @@ impl<T: Real> Trimmed<T> {
         })
     }
 
+    /// The relative difference of area from the surface, if it is beyond the promise.
+    fn missed(&self, facets: &TriangleBody<T>) -> Option<f64> {
+        let promise = self.promised?;
+        let area = self.exact()?.0.area.re();
+        let missed = (facets.of_triangles.area.re() - area).abs() / area;
+        (missed > promise).then_some(missed)
+    }
+
     /// The triangles with vertices at these parameters of the hems, and which these vertices are.
-    fn facets(&self, at: &[Vec<T>]) -> Result<(TriangleBody<T>, Vec<Vec<u32>>), CallError> {
+    fn facets(
+        &self,
+        at: &[Vec<T>],
+        fineness: &Fineness,
+    ) -> Result<(TriangleBody<T>, Vec<Vec<u32>>), CallError> {
         let (cycles, turned, mut rims) = self.loops(at)?;
         // Reversed curves are counted from their other end.
         let mut first = 0;
@@ -347,16 +375,14 @@ impl<T: Real> Trimmed<T> {
             first += total;
         }
         let plane = match self.inside {
-            Some(net) => TrimPlane::of_net(&self.surface, net),
-            None => {
-                TrimPlane::by_curvature(&self.surface, &cycles, &self.fineness, self.most_points)
-            }
+            Some(net) => TrimPlane::of_net(&self.surface, &cycles, net),
+            None => TrimPlane::by_curvature(&self.surface, &cycles, fineness, self.most_points),
         };
         let region = match TrimRegion::new(&cycles, plane) {
             Ok(region) => region,
             // Sides of few vertices may cross only where they are stretched.
             Err(fault) => {
-                let plain = TrimPlane::of_net(&self.surface, [DIVISIONS; 2]);
+                let plain = TrimPlane::of_net(&self.surface, &cycles, [DIVISIONS; 2]);
                 TrimRegion::new(&cycles, plain).map_err(|_| fault)?
             }
         };

@@ -230,7 +230,8 @@ impl Stretch {
         std::array::from_fn(|k| between(&self.at[k], &self.sum[k], p[k]))
     }
 
-    fn back(&self, k: usize, x: f64) -> f64 {
+    /// The parameter of a coordinate along an axis.
+    pub fn back(&self, k: usize, x: f64) -> f64 {
         between(&self.sum[k], &self.at[k], x)
     }
 

@@ -2,7 +2,9 @@
 
 use crate::surface::trim::{MEETING, TrimSurf};
 use crate::surface::trim_density::{Stretch, stretched};
-use moldloft_mesh::planar_triangles;
+use crate::surface::trim_kinks::KinkPlane;
+use moldloft_mesh::{planar_triangles, planar_triangles_along};
+use moldloft_num::period::breaks_between;
 use moldloft_num::{Fineness, Order, Real};
 use moldloft_registry::{CallError, SurfaceRef};
 use std::collections::HashMap;
@@ -30,6 +32,7 @@ const UNFOLDED: f64 = 1e-3;
 pub(crate) struct TrimPlane {
     stretch: Stretching,
     lines: [Vec<f64>; 2],
+    kinks: [Vec<f64>; 2],
     margin: f64,
 }
 
@@ -40,11 +43,16 @@ enum Stretching {
 
 impl TrimPlane {
     /// Parameters scaled to lengths, with the points of the surface's net.
-    pub fn of_net<T: Real>(surface: &SurfaceRef<T>, net: [usize; 2]) -> Self {
+    pub fn of_net<T: Real>(
+        surface: &SurfaceRef<T>,
+        cycles: &[Vec<Place<T>>],
+        net: [usize; 2],
+    ) -> Self {
         let scale = scale(surface);
         let line = |n: usize| (0..=n).map(|i| i as f64 / n as f64).collect();
         let margin = NET_MARGIN * (scale[0] / net[0] as f64).min(scale[1] / net[1] as f64);
-        Self { stretch: Stretching::Scaled(scale), lines: net.map(line), margin }
+        let kinks = kinks(surface, cycles);
+        Self { stretch: Stretching::Scaled(scale), lines: net.map(line), kinks, margin }
     }
 
     /// Parameters stretched by curvature, with at most `most` points in the box of the loops.
@@ -56,7 +64,8 @@ impl TrimPlane {
     ) -> Self {
         let stretch = Self::stretch(surface, cycles, fineness);
         let lines = stretch.lines(most);
-        Self { stretch: Stretching::ByCurvature(stretch), lines, margin: MARGIN }
+        let kinks = kinks(surface, cycles);
+        Self { stretch: Stretching::ByCurvature(stretch), lines, kinks, margin: MARGIN }
     }
 
     /// The number of points that this fineness takes in the box of the loops.
@@ -75,13 +84,7 @@ impl TrimPlane {
     ) -> Stretch {
         let polygons: Vec<Vec<[f64; 2]>> =
             cycles.iter().map(|c| c.iter().map(|p| p.map(T::re)).collect()).collect();
-        let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
-        for p in polygons.iter().flatten() {
-            for k in 0..2 {
-                (low[k], high[k]) = (low[k].min(p[k]), high[k].max(p[k]));
-            }
-        }
-        stretched(fineness, surface, [low, high], |us, v| rows(&polygons, us, v))
+        stretched(fineness, surface, extent(cycles), |us, v| rows(&polygons, us, v))
     }
 
     fn forward(&self, p: [f64; 2]) -> [f64; 2] {
@@ -90,6 +93,39 @@ impl TrimPlane {
             Stretching::ByCurvature(stretch) => stretch.forward(p),
         }
     }
+
+    fn back(&self, k: usize, x: f64) -> f64 {
+        match &self.stretch {
+            Stretching::Scaled(s) => x / s[k],
+            Stretching::ByCurvature(stretch) => stretch.back(k, x),
+        }
+    }
+}
+
+/// The corners of the box of loops.
+fn extent<T: Real>(cycles: &[Vec<Place<T>>]) -> [[f64; 2]; 2] {
+    let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
+    for p in cycles.iter().flatten() {
+        for k in 0..2 {
+            (low[k], high[k]) = (low[k].min(p[k].re()), high[k].max(p[k].re()));
+        }
+    }
+    [low, high]
+}
+
+/// Parameters u and v within loops at which the surface may have a kink.
+fn kinks<T: Real>(surface: &SurfaceRef<T>, cycles: &[Vec<Place<T>>]) -> [Vec<f64>; 2] {
+    let ([low, high], closed) = (extent(cycles), surface.closed());
+    let mut kinks = surface.kinks();
+    for k in 0..2 {
+        kinks[k] = breaks_between(&kinks[k], closed[k], low[k], high[k]);
+    }
+    kinks
+}
+
+/// True for a point inside polygons.
+pub(crate) fn within(polygons: &[Vec<[f64; 2]>], [x, y]: [f64; 2]) -> bool {
+    rows(polygons, &[x], y)[0]
 }
 
 /// Flags of ascending points of a line v = const that are inside polygons, by the rule of odd
@@ -305,8 +341,7 @@ impl TrimRegion {
         }
         let region = Self { plane, polygons, grid };
         for (k, polygon) in region.polygons.iter().enumerate().skip(1) {
-            let [x, y] = polygon[0];
-            if !rows(&region.polygons[..1], &[x], y)[0] {
+            if !within(&region.polygons[..1], polygon[0]) {
                 let [u, v] = cycles[k][0].map(T::re);
                 let what = format!("loop {} is not inside the outer one", k + 1);
                 return Err(region.crossed(what, format!("(u, v) = ({u}, {v})")));
@@ -341,21 +376,38 @@ impl TrimRegion {
             loops.push((first..first + polygon.len()).collect());
             first += polygon.len();
         }
-        let mut places = Vec::new();
+        let kinks = KinkPlane {
+            polygons: &self.polygons,
+            kinks: &self.plane.kinks,
+            lines: &self.plane.lines,
+            margin: self.plane.margin,
+            forward: &|k, x| self.plane.forward([x; 2])[k],
+            back: &|k, x| self.plane.back(k, x),
+        };
+        let broken = kinks.lines();
+        let mut places = broken.places;
+        points.extend(broken.points);
         let [us, vs] = &self.plane.lines;
         let xs: Vec<f64> = us.iter().map(|&u| self.plane.forward([u, vs[0]])[0]).collect();
+        let clear: Vec<bool> = xs.iter().map(|&x| !kinks.near(0, x)).collect();
         for &v in vs {
             let y = self.plane.forward([us[0], v])[1];
+            if kinks.near(1, y) {
+                continue;
+            }
             for (i, inside) in rows(&self.polygons, &xs, y).into_iter().enumerate() {
                 let p = [xs[i], y];
-                if inside && self.grid.far(p, self.plane.margin) {
+                if inside && clear[i] && self.grid.far(p, self.plane.margin) {
                     places.push([us[i], v]);
                     points.push(p);
                 }
             }
         }
         let inner: Vec<usize> = (rim..points.len()).collect();
-        let triangles = planar_triangles(&points, &loops, &inner);
+        let mut triangles = planar_triangles_along(&points, &loops, &broken.edges, &inner);
+        if triangles.is_empty() && !broken.edges.is_empty() {
+            triangles = planar_triangles(&points, &loops, &inner);
+        }
         (places, triangles.into_iter().map(|t| t.map(|k| k as u32)).collect())
     }
 }
