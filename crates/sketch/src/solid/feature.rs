@@ -5,7 +5,7 @@ use super::blend_order::BlendSize;
 use super::combine::{CombineError, combined, united};
 use super::edges::FaceForm;
 pub use super::edges::TreatmentFault;
-use super::kept_bodies::{KeptBodies, KeptBody, Made, numbers};
+use super::kept_bodies::{KeptBodies, KeptBody, numbers};
 use super::loft::lofted;
 use super::offset::{drafted, moved, shelled};
 use super::offset_section::moved_section;
@@ -101,7 +101,7 @@ pub(crate) fn body_kept(
     object: &Arc<SketchObject>,
     planes: &Planes,
     layout: &DimensionLayout<f64>,
-    kept: &Arc<KeptBodies>,
+    kept: &Arc<SessionBodies>,
 ) -> Result<SketchSolid<f64>, NoBody> {
     let mut plan = FacetPlan { kept: Arc::clone(kept), ..FacetPlan::default() };
     match object.feature {
@@ -111,12 +111,17 @@ pub(crate) fn body_kept(
     }
 }
 
+type Made = Result<SketchSolid<f64>, NoBody>;
+
+/// The latest bodies of a session.
+pub(crate) type SessionBodies = KeptBodies<Made>;
+
 /// Facets of a body: those that the features need that have it as an operand, in its own coordinates, and its own.
 #[derive(Clone, Default)]
 pub(super) struct FacetPlan {
     inherited: FacetDensity,
     own: FacetDensity,
-    kept: Arc<KeptBodies>,
+    kept: Arc<SessionBodies>,
 }
 
 impl FacetPlan {
@@ -154,7 +159,9 @@ impl FacetPlan {
         let plain = (&made as &dyn Any).downcast_ref::<Made>().map(|m| Arc::new(m.clone()));
         let FacetPlan { inherited, own, .. } = plan;
         let object = Arc::clone(object);
-        self.kept.keep(KeptBody { object, numbers, inherited, own, made: plain });
+        let body = plain.as_deref().and_then(|m: &Made| m.as_ref().ok());
+        let size = body.map_or(1, |body| body.vertices.len());
+        self.kept.keep(KeptBody { object, numbers, inherited, own, made: plain, size });
         made
     }
 

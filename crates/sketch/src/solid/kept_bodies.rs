@@ -1,7 +1,5 @@
 //! The bodies of a session that are kept between changes.
 
-use super::SketchSolid;
-use super::feature::NoBody;
 use super::outline::FacetDensity;
 use crate::{DimensionLayout, SketchObject};
 use moldloft_num::Real;
@@ -14,33 +12,34 @@ const MAX_KEPT: usize = 256;
 /// Maximum number of vertices of all of them.
 const MAX_VERTICES: usize = 100_000;
 
-pub(super) type Made = Result<SketchSolid<f64>, NoBody>;
-
 /// A body, and of what it was made.
 #[derive(Debug)]
-pub(super) struct KeptBody {
+pub(super) struct KeptBody<M> {
     pub object: Arc<SketchObject>,
     pub numbers: Vec<u64>,
     pub inherited: FacetDensity,
     /// The facets that it needed.
     pub own: FacetDensity,
-    pub made: Option<Arc<Made>>,
+    pub made: Option<Arc<M>>,
+    /// Its number of vertices.
+    pub size: usize,
 }
 
-impl KeptBody {
+impl<M> KeptBody<M> {
     fn is_of(&self, object: &Arc<SketchObject>, numbers: &[u64], inherited: &FacetDensity) -> bool {
         Arc::ptr_eq(&self.object, object) && self.numbers == numbers && self.inherited == *inherited
-    }
-
-    fn size(&self) -> usize {
-        let body = self.made.as_deref().and_then(|m| m.as_ref().ok());
-        body.map_or(1, |b| b.vertices.len())
     }
 }
 
 /// The latest bodies of a session.
-#[derive(Debug, Default)]
-pub(crate) struct KeptBodies(Mutex<VecDeque<KeptBody>>);
+#[derive(Debug)]
+pub(crate) struct KeptBodies<M>(Mutex<VecDeque<KeptBody<M>>>);
+
+impl<M> Default for KeptBodies<M> {
+    fn default() -> Self {
+        Self(Mutex::default())
+    }
+}
 
 /// The bits of all that a body of an object depends on.
 pub(super) fn numbers<T: Real>(layout: &DimensionLayout<T>) -> Vec<u64> {
@@ -49,14 +48,14 @@ pub(super) fn numbers<T: Real>(layout: &DimensionLayout<T>) -> Vec<u64> {
     coordinates.chain(layout.values.values().map(|x| x.re().to_bits())).collect()
 }
 
-impl KeptBodies {
+impl<M> KeptBodies<M> {
     /// The facets that an object needed, and its body.
     pub(super) fn find(
         &self,
         object: &Arc<SketchObject>,
         numbers: &[u64],
         inherited: &FacetDensity,
-    ) -> Option<(FacetDensity, Option<Arc<Made>>)> {
+    ) -> Option<(FacetDensity, Option<Arc<M>>)> {
         let mut kept = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         let at = kept.iter().position(|k| k.is_of(object, numbers, inherited))?;
         let body = kept.remove(at)?;
@@ -65,13 +64,13 @@ impl KeptBodies {
         Some(found)
     }
 
-    pub(super) fn keep(&self, body: KeptBody) {
+    pub(super) fn keep(&self, body: KeptBody<M>) {
         let mut kept = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         kept.retain(|k| !k.is_of(&body.object, &body.numbers, &body.inherited));
         kept.push_back(body);
-        let mut vertices: usize = kept.iter().map(KeptBody::size).sum();
+        let mut vertices: usize = kept.iter().map(|k| k.size).sum();
         while kept.len() > MAX_KEPT || (vertices > MAX_VERTICES && kept.len() > 1) {
-            vertices -= kept.pop_front().as_ref().map_or(0, KeptBody::size);
+            vertices -= kept.pop_front().as_ref().map_or(0, |k| k.size);
         }
     }
 }

@@ -27,7 +27,7 @@ mod finer_mesh;
 pub(crate) mod gradient;
 mod hole;
 mod joined_round;
-pub(crate) mod kept_bodies;
+mod kept_bodies;
 mod loft;
 pub(crate) mod mass;
 mod meeting;
