@@ -27,8 +27,9 @@ TABLES = ("rounded end", "proud disc", "lug", "clevis", "slot", "row", "grid", "
 CROSSED = {"keyway", "equal cross", "cross", "breakout", "clevis"}
 
 
-def bounds(family: str) -> dict[str, float]:
-    return SPLINES if family in CROSSED else BOUNDS
+def bounds(family: str, t: float = 1.0) -> dict[str, float]:
+    # Beside a point where two loops of a face touch, the integral over a file is good to 1e-7.
+    return SPLINES if family in CROSSED or t == 0.0 else BOUNDS
 
 
 @pytest.mark.parametrize("family", TABLES if SOAK else ("lug", "slot", "keyway"))
@@ -56,5 +57,5 @@ def test_five_ways_through_tangency(family: str, tmp_path: Path) -> None:
                 volume = bored(Sizes(f"{family} ways {k}"), t)
             own = sketch.objects[part.name]["volume"]
             assert own == pytest.approx(volume, rel=BOUND), (k, t, text)
-            found = wrong(apart(sketch, part.name, tmp_path), bounds(family))
+            found = wrong(apart(sketch, part.name, tmp_path), bounds(family, t))
             assert not found, (k, t, found, text)
