@@ -34,6 +34,7 @@ from moldloft.cad.iges_text import IgesText
 from moldloft.cad.part21 import StepText
 from moldloft.cad.rhino_reading import step_text
 from moldloft.cad.sewing import Sewn, faces_of, is_sheet, map_of
+from moldloft.cad.tracing import traced
 from moldloft.errors import Error, FileError
 from moldloft.shapes.nurbs import Nurbs
 from moldloft.storage import read_bytes
@@ -47,6 +48,12 @@ __all__ = ["of_part", "read_shape"]
 
 _OUTSIDE = 1e-6
 """Parameters this far outside of a surface's are rounded onto its border."""
+
+_BEYOND = 0.05
+"""A trace that leaves the surface's parameters by more is compared with its curve."""
+
+_ASTRAY = 1e-4
+"""Distance of a trace from its curve, relative to the surface, from which it is not the curve's."""
 
 _NOTHING = 1e-8
 """A side is left out that spans no more of its surface's parameters."""
@@ -840,7 +847,7 @@ def _face(face: Any, edges: Any, name: str) -> ImportedFace:
     wires = faces_of(face, TopAbs_WIRE)
     wires.sort(key=lambda w: not w.IsSame(outer))
     frame = np.array([u0, v0, 0.0]), np.array([u1 - u0, v1 - v0, 1.0])
-    loops = [_cycle(TopoDS.Wire(wire), face, edges, frame) for wire in wires]
+    loops = [_cycle(TopoDS.Wire(wire), face, edges, frame, made) for wire in wires]
     sides = [side for cycle in loops for side in cycle]
     natural = bool(sides) and all(border(side.trace) for side in sides)
     if sides and not natural:
@@ -852,7 +859,9 @@ def _face(face: Any, edges: Any, name: str) -> ImportedFace:
     return ImportedFace(name, made, loops, natural, False)
 
 
-def _cycle(wire: Any, face: Any, edges: Any, frame: tuple[Floats, Floats]) -> list[ImportedSide]:
+def _cycle(
+    wire: Any, face: Any, edges: Any, frame: tuple[Floats, Floats], surface: Nurbs
+) -> list[ImportedSide]:
     """The sides of a loop, in its order."""
     from OCP.BRep import BRep_Tool
     from OCP.BRepTools import BRepTools_WireExplorer
@@ -891,8 +900,25 @@ def _cycle(wire: Any, face: Any, edges: Any, frame: tuple[Floats, Floats]) -> li
             continue
         backwards = edge.Orientation() == TopAbs_REVERSED
         near = BRep_Tool.Tolerance_s(edge)
+        if np.abs(trace.points - np.clip(trace.points, 0, 1)).max() > _BEYOND:
+            trace = _followed(surface, edge, trace)
         cycle.append(ImportedSide(edges.FindIndex(edge), backwards, trace, near))
     return cycle if ordered else _chained(cycle)
+
+
+def _followed(surface: Nurbs, edge: Any, trace: Nurbs) -> Nurbs:
+    """A trace, or the one of the edge's curve where OCCT has put it beside the surface."""
+    curve = _space_curve(edge)
+    if curve is None:
+        return trace
+    t = np.linspace(0, 1, 9)
+    at = np.clip(trace(t)[:, :2], 0, 1)
+    off = np.linalg.norm(surface(at[:, 0], at[:, 1]) - curve(t), axis=1).max()
+    size = float(np.ptp(surface.points.reshape(-1, 3), axis=0).max())
+    if off <= _ASTRAY * size:
+        return trace
+    found = traced(surface, curve, 0.0)
+    return found[0] if found else trace
 
 
 def _chained(sides: list[ImportedSide]) -> list[ImportedSide]:

@@ -393,8 +393,91 @@ def passing_groove(n: Sizes, t: float) -> Tool:
     return cut("P", shaft, ring("G", r, q, (0.0, 0.0, q + t)))
 
 
+def passing_bored_lug(n: Sizes, t: float) -> Tool:
+    """A lug with its bore and foot: the walls meet the round end tangentially at 0."""
+    r, h, thick = n(10, 30), n(30, 70), n(5, 30)
+    block = box("M", (-r - t, 0.0, 0.0), (2 * (r + t), thick, h))
+    body = joined("L", block, rod("C", "y", r, (0.0, 0.0, h), thick))
+    bored = cut("N", body, rod("D", "y", n(2, 0.6 * r), (0.0, -2.0, h), thick + 4.0))
+    return joined("P", bored, box("F", (-r - 12.0, 0.0, -8.0), (2 * r + 24.0, thick, 8.0)))
+
+
+def passing_clevis(n: Sizes, t: float) -> Tool:
+    """A fork with round ends and a shank, which touches its sides at 0."""
+    r, h, thick = n(10, 25), n(40, 60), n(16, 40)
+    block = box("M", (-r, 0.0, 0.0), (2 * r, thick, h))
+    body = joined("L", block, rod("C", "y", r + t, (0.0, 0.0, h), thick))
+    gap = n(4, 0.5 * thick)
+    fork = box("G", (-r - 4.0, (thick - gap) / 2, n(10, 18)), (2 * r + 8.0, gap, h + r + 4.0))
+    bore = rod("D", "y", n(2, 0.5 * r), (0.0, -1.0, h), thick + 2.0)
+    shank = rod("S", "z", min(thick / 2, r) + t, (0.0, thick / 2, -20.0), 20.0)
+    return joined("P", cut("N", body, fork, bore), shank)
+
+
+def passing_keyway(n: Sizes, t: float) -> Tool:
+    r, b, long, deep = n(12, 30), n(3, 5), n(10, 25), n(2, 4)
+    slot = box("M", (-b, r - deep, 8.0), (2 * b, 20.0, long))
+    ends = [
+        rod(k, "y", b + t, (0.0, r - deep, z), 20.0) for k, z in (("C", 8.0), ("D", 8.0 + long))
+    ]
+    return cut("P", rod("A", "z", r, (0.0, 0.0, 0.0), 60.0), *n.shuffled([slot, *ends]))
+
+
+def passing_row(n: Sizes, t: float) -> Tool:
+    """Three holes in a row, which touch each other at 0."""
+    r, y = n(3, 8), n(20, 40)
+    gap = 2 * r + t
+    holes = [rod(f"H{k}", "z", r, (12.0 + k * gap, y, -1.0), 12.0) for k in range(3)]
+    return cut("P", box("A", (0.0, 0.0, 0.0), (90.0, 60.0, 8.0)), *n.shuffled(holes))
+
+
+def passing_grid(n: Sizes, t: float) -> Tool:
+    """A grid of holes, of which two rows touch the plate's sides at 0."""
+    r, p = n(4, 8), n(20, 30)
+    wide = 60.0
+    places = [(15.0 + i * p, y) for i in range(2) for y in (r + t, wide - r - t)]
+    holes = [rod(f"H{k}", "z", r, (*at, -1.0), 12.0) for k, at in enumerate(places)]
+    return cut("P", box("A", (0.0, 0.0, 0.0), (90.0, wide, 8.0)), *n.shuffled(holes))
+
+
+def passing_polar(n: Sizes, t: float) -> Tool:
+    """A bolt circle whose holes touch the bore at 0, at any angle."""
+    bore, r, k, first = n(8, 14), n(3, 6), n.count(2, 5), n.pick(0.0, n(0, 90))
+    disc = rod("A", "z", 50.0, (0.0, 0.0, 0.0), 8.0)
+    holes = []
+    for j in range(k):
+        hole = rod(f"H{j}", "z", r, (bore + r + t, 0.0, -1.0), 10.0)
+        holes.append(turned(hole, "z", first + 360.0 * j / k, (0.0, 0.0, 0.0)))
+    return cut("P", disc, *n.shuffled([*holes, rod("I", "z", bore, (0.0, 0.0, -1.0), 10.0)]))
+
+
+def passing_inner_posts(n: Sizes, t: float) -> Tool:
+    """Posts on a floor, which touch its border from inside at 0."""
+    r, post, high = n(20, 40), n(3, 6), n(5, 20)
+    floor = rod("A", "z", r, (0.0, 0.0, 0.0), 5.0)
+    off = r - post + t
+    posts = [rod(f"S{k}", "z", post, (x, y, 0.0), 5.0 + high)
+             for k, (x, y) in enumerate([(off, 0.0), (0.0, off), (-off, 0.0)])]  # fmt: skip
+    return joined("P", floor, *n.shuffled(posts))
+
+
+def passing_equal_cross(n: Sizes, t: float) -> Tool:
+    """Bars of one diameter, whose axes meet at 0."""
+    r = n(6, 20)
+    bars = [rod("A", "x", r, (-40.0, 0.0, 0.0), 80.0), rod("B", "y", r, (0.0, -40.0, t), 80.0)]
+    return joined("P", *n.shuffled(bars))
+
+
 PASSING: dict[str, Callable[[Sizes, float], Tool]] = {
     "lug": passing_lug,
+    "bored lug": passing_bored_lug,
+    "clevis": passing_clevis,
+    "keyway": passing_keyway,
+    "row": passing_row,
+    "grid": passing_grid,
+    "polar": passing_polar,
+    "inner posts": passing_inner_posts,
+    "equal cross": passing_equal_cross,
     "flush": passing_flush,
     "slot": passing_slot,
     "edge": passing_edge,

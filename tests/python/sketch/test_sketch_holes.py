@@ -75,7 +75,9 @@ def test_flanges_and_plates(seed, tmp_path):
     (tmp_path / "m.sdl").write_text('load "part.skt";')
     model = moldloft.load(tmp_path / "m.sdl")
     assert model.eval("c.volume") == pytest.approx(expected, rel=1e-9)
-    assert model.eval("volume(c.body)") == pytest.approx(expected, rel=1e-6)
+    assert model.eval("volume(c.body)") == pytest.approx(expected, rel=1e-9)
+    wide = "cuboid({-900, -900, -900}, {900, 900, 900})"
+    assert model.eval(f"volume(c.body & {wide})") == pytest.approx(expected, rel=1e-6)
     mesh = model.mesh(tolerance=1e-3)
     assert mesh.closed and mesh.volume == pytest.approx(expected, rel=2e-3)
     (tmp_path / "part.step").write_bytes(sketch.run("EXPORT STEP C part.step")[-1].file[1])

@@ -1,4 +1,4 @@
-"""Ordinary parts at random sizes: each body is OCCT's, and one volume is found in five ways.
+"""Ordinary parts at random sizes: each body is OCCT's, and so is its STEP file.
 
 A few here; with MOLDLOFT_SOAK=1 a thousand sizes of each family.
 """
@@ -37,27 +37,6 @@ def test_ordinary_parts_are_those_of_occt(family: str) -> None:
         assert sketch.volume == pytest.approx(volume, rel=BOUND), (k, part.text)
         assert sketch.area == pytest.approx(area, rel=10 * BOUND), (k, part.text)
     assert not refused
-
-
-@pytest.mark.parametrize("family", FAMILIES if SOAK else ("lug", "equal cross", "keyway"))
-def test_one_volume_in_five_ways(family: str, tmp_path) -> None:
-    for k in range(100 if SOAK else 1):
-        part = FAMILIES[family](Sizes(f"{family} {k}"))
-        sketch = Sketch()
-        sketch.run(f"{part.text}USING {part.name}")
-        assert sketch.volume is not None and sketch.area is not None
-        (tmp_path / "part.skt").write_text(sketch.text)
-        (tmp_path / "m.sdl").write_text('load "part.skt";')
-        model = moldloft.load(tmp_path / "m.sdl")
-        name = part.name.lower()
-        assert model.eval(f"{name}.volume") == pytest.approx(sketch.volume, rel=1e-9), k
-        assert model.eval(f"volume({name}.body)") == pytest.approx(sketch.volume, rel=1e-9), k
-        mesh = model.mesh(tolerance=1e-2)
-        assert mesh.closed, k
-        assert abs(mesh.volume - sketch.volume) <= 1.01e-2 * sketch.area, k
-        path = tmp_path / "part.step"
-        path.write_bytes(sketch.run(f"EXPORT STEP {part.name} part.step")[-1].file[1])
-        assert read_volume(path) == pytest.approx(sketch.volume, rel=BOUND), k
 
 
 #: Families of parts that touch themselves along a line, or whose faces touch.

@@ -263,7 +263,7 @@ fn the_body_is_an_exact_set() {
     by(&mut m, "dam.CREST");
     // The fillet is a cylinder, not its chords.
     let exact = number(&mut m, "bracket.volume");
-    let found = number(&mut m, "volume(bracket.body, accuracy = 1e-3)");
+    let found = number(&mut m, "volume(bracket.body, {-99,-99,-99}, {99,99,99}, 1e-3)");
     assert!((found - exact).abs() < 1e-3, "{found} {exact}");
     let chords = number(&mut m, "bracket.solid.volume");
     assert!((chords - exact).abs() < 1e-9);

@@ -128,6 +128,14 @@ impl<T: Real> Build<T> for FaceSet<T> {
             }
             made => made,
         };
-        Ok(crate::set_value(made.map_err(|e| fault(&e).in_field(Self::BODY))?))
+        let set = made.map_err(|e| fault(&e).in_field(Self::BODY))?;
+        // Those of the triangles are too small where faces are round.
+        let own = self.body.of_triangles;
+        let cut = TriangleBody::new(points.to_vec(), triangles.to_vec()).of_triangles;
+        let better = own.volume.re() != cut.volume.re() && own.area.re() != cut.area.re();
+        Ok(crate::set_value(match better || rounds.is_empty() {
+            true => set.measured(own.volume, own.area),
+            false => set,
+        }))
     }
 }

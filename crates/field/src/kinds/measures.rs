@@ -51,12 +51,12 @@ fn moments<T: Real>(
 macro_rules! measure {
     (
         $kind:ident, $class:ident, $name:literal, $doc:literal, $accuracy:literal, $example:literal,
-        |$this:ident, $set:ident, $region:ident, $context:ident| $body:expr
+        $known:expr, |$this:ident, $set:ident, $region:ident, $context:ident| $body:expr
     ) => {
         #[doc = $doc]
         ///
         /// Default box: the bounds of the set; an unbounded set needs a box. Faces of the box cut
-        /// the set.
+        /// the set. Volume and area of the body of a sketch are those of its faces, exact.
         #[derive(Kind)]
         #[kind(forward, class = $class, function, name = $name, example = $example)]
         pub struct $kind<T: Real> {
@@ -77,6 +77,12 @@ macro_rules! measure {
             fn build(self, $context: &Context) -> Result<Value<T>, CallError> {
                 let $this = self;
                 let $set = &$this.set.0;
+                let own: fn([T; 2]) -> Option<T> = $known;
+                if let (None, None, Some(known)) =
+                    (&$this.low, &$this.high, $set.figures().and_then(own))
+                {
+                    return Ok(Value::Number(known));
+                }
                 let $region = region(&$set.re(), &$this.low, &$this.high, [Self::SET, Self::HIGH])?;
                 $body
             }
@@ -91,6 +97,7 @@ measure!(
     "The volume of a set within a box, by a high-order rule; `volume_bracket` gives guaranteed bounds.",
     "Maximum difference of two values at successive divisions of the box; default: 1e-8 of the box's volume.",
     "assert abs(volume(set(sphere({0, 0, 0}, 1))) - 4.18879) < 1e-4;",
+    |[volume, _]| Some(volume),
     |this, set, region, context| {
         let m = moments(set, &region, this.accuracy, context).map_err(|e| fault(&e))?;
         Ok(Value::Number(m.volume()))
@@ -104,6 +111,7 @@ measure!(
     "The centre of mass of a set within a box.",
     "Maximum difference of two volumes at successive divisions of the box; default: 1e-8 of the box's volume.",
     "set half = set(sphere({0, 0, 0}, 1)) & set(plane({0, 0, -1}, {0, 0, 0})); assert abs(mass_centre(half).z - 0.375) < 1e-4;",
+    |_| None,
     |this, set, region, context| {
         let m = moments(set, &region, this.accuracy, context).map_err(|e| fault(&e))?;
         if m.volume().re() <= 0.0 {
@@ -120,6 +128,7 @@ measure!(
     "The rows of the matrix of inertia of a set of density 1 about its centroid.",
     "Maximum difference of two volumes at successive divisions of the box; default: 1e-8 of the box's volume.",
     "curve rows = inertia(cuboid({0, 0, 0}, {1, 2, 3})); assert abs(rows[1].x - 6.5) < 1e-6;",
+    |_| None,
     |this, set, region, context| {
         let m = moments(set, &region, this.accuracy, context).map_err(|e| fault(&e))?;
         if m.volume().re() <= 0.0 {
@@ -142,6 +151,7 @@ measure!(
     "The area of the surface of a set within a box, sheets counted once.",
     "Maximum difference of two values at successive divisions of the box; default: 1e-6 of the area.",
     "assert abs(area(set(sphere({0, 0, 0}, 1))) - 12.56637) < 1e-5;",
+    |[_, area]| Some(area),
     |this, set, region, context| {
         let memo = context.kept.of();
         refined(this.accuracy, Self::ACCURACY, context, |options| {
@@ -157,6 +167,7 @@ measure!(
     "The length of the wires of a set within a box: curves in which two sheets meet.",
     "Maximum difference of two values at successive divisions of the box; default: 1e-6 of the length.",
     "set ring = set(abs(sphere({0, 0, 0}, 1))) & set(abs(plane({0, 0, 1}, {0, 0, 0.6}))); assert abs(wire_length(ring) - 5.0265482) < 1e-5;",
+    |_| None,
     |this, set, region, context| {
         refined(this.accuracy, Self::ACCURACY, context, |options| length(set, &region, options))
     }

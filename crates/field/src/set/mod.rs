@@ -112,11 +112,12 @@ impl<T: Real> Drop for SetNode<T> {
 pub struct Set<T: Real = f64> {
     node: Arc<SetNode<T>>,
     attributes: Option<Arc<SetAttributes>>,
+    figures: Option<[T; 2]>,
 }
 
 impl<T: Real> Clone for Set<T> {
     fn clone(&self) -> Self {
-        Self { node: self.node.clone(), attributes: self.attributes.clone() }
+        Self { node: self.node.clone(), attributes: self.attributes.clone(), figures: self.figures }
     }
 }
 
@@ -172,7 +173,8 @@ impl<T: Real> Set<T> {
         }
         operands.iter().for_each(|o| o.node.fingerprint.hash(&mut h));
         let fingerprint = h.finish();
-        Self { node: Arc::new(SetNode { kind, operands, fingerprint }), attributes: None }
+        let node = Arc::new(SetNode { kind, operands, fingerprint });
+        Self { node, attributes: None, figures: None }
     }
 
     /// A number by which different sets mostly differ.
@@ -379,6 +381,17 @@ impl<T: Real> Set<T> {
     /// The two operands of a union or intersection.
     pub fn operands(&self) -> &[Set<T>] {
         &self.node.operands
+    }
+
+    /// The same set, of which volume and area are known; what is made of it has its own.
+    #[must_use]
+    pub fn measured(self, volume: T, area: T) -> Self {
+        Self { figures: Some([volume, area]), ..self }
+    }
+
+    /// Volume and area, if they are known by its faces.
+    pub fn figures(&self) -> Option<[T; 2]> {
+        self.figures
     }
 
     /// The same set with these attributes, completed by its existing ones.

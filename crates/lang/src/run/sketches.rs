@@ -421,7 +421,8 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                 let mut leaves = Vec::new();
                 let set = body_tree(object, &drawn.planes, layout)
                     .and_then(|tree| self.set_of_bodies(names, &tree, &mut leaves));
-                if let Some(set) = set {
+                if let Some(set) = set.as_ref().and_then(set_of) {
+                    let set = set_value(set.measured(mass.volume, mass.area));
                     let parents = Value::list(leaves.into_iter().map(Value::Object));
                     self.part(names, "body", "Set", vec![set, parents], false);
                 }

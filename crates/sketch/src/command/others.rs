@@ -2,7 +2,7 @@
 
 use super::session::{SessionState, SketchSession};
 use crate::identifier::identifier;
-use crate::solid::feature::foreign;
+use crate::solid::feature::{ForeignNames, foreign, foreign_known};
 use crate::{DimensionExpr, DimensionLayout, SketchObject, numbers};
 use moldloft_num::Real;
 use std::collections::BTreeMap;
@@ -25,7 +25,7 @@ impl SessionState {
         given: &BTreeMap<String, T>,
     ) -> BTreeMap<String, T> {
         let mut known = BTreeMap::from([(key(object), BTreeMap::new())]);
-        self.read_by(object, given, &mut known)
+        self.read_by(object, given, &mut known, &mut ForeignNames::new())
     }
 
     fn read_by<T: Real>(
@@ -33,22 +33,23 @@ impl SessionState {
         object: &SketchObject,
         given: &BTreeMap<String, T>,
         known: &mut BTreeMap<String, BTreeMap<String, T>>,
+        names: &mut ForeignNames,
     ) -> BTreeMap<String, T> {
         let mut found = BTreeMap::new();
-        for name in foreign(object) {
+        for name in foreign_known(object, names).iter() {
             let Some((of, number)) = name.split_once('.') else { continue };
-            let Some(other) = self.called(of) else { continue };
             if !known.contains_key(of) {
+                let Some(other) = self.called(of) else { continue };
                 // In progress: excludes circular references.
                 known.insert(of.to_owned(), BTreeMap::new());
-                let mut read = self.read_by(other, given, known);
+                let mut read = self.read_by(other, given, known, names);
                 let prefix = format!("{of}.");
                 let own = given.iter().filter_map(|(n, x)| Some((n.strip_prefix(&prefix)?, *x)));
                 read.extend(own.map(|(n, x)| (n.to_owned(), x)));
                 known.insert(of.to_owned(), numbers(other, &read));
             }
             if let Some(value) = known[of].get(number) {
-                found.insert(name, *value);
+                found.insert(name.clone(), *value);
             }
         }
         found

@@ -6,7 +6,7 @@ use super::question::Question;
 use super::subject::ReplySubject;
 use super::words::{self, Command};
 use super::{CommandError, verbs};
-use crate::solid::feature::KeptBodies;
+use crate::solid::feature::SessionBodies;
 use crate::solid::feature::{NoBody, body_kept};
 use crate::solid::{SketchSolid, solid};
 use crate::{DimensionLayout, Estimate, Planes, PointId, SketchObject, solve};
@@ -183,7 +183,7 @@ pub(crate) struct Worked {
     pub layout: DimensionLayout<f64>,
     /// Numbers of other objects that it reads.
     others: OtherNumbers,
-    kept: Arc<KeptBodies>,
+    kept: Arc<SessionBodies>,
     body: std::sync::OnceLock<Result<SketchSolid<f64>, NoBody>>,
 }
 
@@ -231,7 +231,7 @@ pub struct SketchSession {
     begun: String,
     views: Vec<Arc<DrawingCache>>,
     worked: Vec<Arc<Worked>>,
-    kept: Arc<KeptBodies>,
+    kept: Arc<SessionBodies>,
     depth: usize,
     over: bool,
     /// Files written by SAVE and EXPORT in the current line, not passed to the host yet.

@@ -3,18 +3,27 @@
 use crate::format::page_curve::{PageCurve, mix};
 use crate::format::page_shapes::PageShapes;
 use crate::format::svg_transform::{SvgTransform, numbers};
+use std::collections::HashMap;
+
+/// Elements whose content is not drawn where it is.
+const UNSEEN: [&str; 7] = ["defs", "clipPath", "mask", "marker", "pattern", "symbol", "metadata"];
+
+/// The most elements that are drawn by reference, and the deepest reference in a reference.
+const MOST_USES: usize = 10_000;
+const DEEPEST_USE: usize = 32;
 
 /// Reads the shapes of an SVG text; v is up, as on the page of a sketch.
 ///
 /// # Errors
 /// The reason why the text is not an SVG, or cannot be placed.
 pub fn svg_shapes(text: &str) -> Result<PageShapes, String> {
-    let mut shapes = PageShapes::default();
-    let mut known = false;
-    let mut hidden: Vec<String> = Vec::new();
-    // The transforms of the elements around.
-    let mut around: Vec<SvgTransform> = Vec::new();
-    let mut rest = text;
+    let mut reading = SvgReading { named: named(text)?, shapes: PageShapes::default(), uses: 0 };
+    let known = reading.elements(text, SvgTransform::NONE, 0)?;
+    if known { Ok(reading.shapes) } else { Err("it has no svg element".into()) }
+}
+
+/// The text after the next tag that is no comment, and the tag.
+fn next_tag(mut rest: &str) -> Result<Option<(&str, &str)>, String> {
     while let Some(at) = rest.find('<') {
         rest = &rest[at + 1..];
         if let Some(comment) = rest.strip_prefix("!--") {
@@ -23,47 +32,135 @@ pub fn svg_shapes(text: &str) -> Result<PageShapes, String> {
             continue;
         }
         let end = tag_end(rest).ok_or("an element does not end")?;
-        let (tag, after) = (&rest[..end], &rest[end + 1..]);
-        rest = after;
-        if tag.starts_with(['!', '?']) {
-            continue;
+        let tag = &rest[..end];
+        rest = &rest[end + 1..];
+        if !tag.starts_with(['!', '?']) {
+            return Ok(Some((rest, tag)));
         }
-        if let Some(name) = tag.strip_prefix('/') {
-            if hidden.is_empty() {
-                around.pop();
-            } else if hidden.last().is_some_and(|h| *h == name.trim()) {
-                hidden.pop();
-            }
-            continue;
-        }
-        let (body, alone) = tag.strip_suffix('/').map_or((tag, false), |t| (t, true));
-        let name = body.split(|c: char| c.is_whitespace()).next().unwrap_or("");
-        let local = name.rsplit(':').next().unwrap_or(name);
-        known |= local == "svg";
-        if !known {
-            return Err("it does not begin with an svg element".into());
-        }
-        let unseen = ["defs", "clipPath", "mask", "marker", "pattern", "symbol", "metadata"];
-        if !hidden.is_empty() || unseen.contains(&local) {
-            if !alone {
-                hidden.push(name.to_owned());
-            }
-            continue;
-        }
-        let attributes = attributes(&body[name.len()..])?;
-        let outer = around.last().copied().unwrap_or(SvgTransform::NONE);
-        let place = match attributes.iter().find(|a| a.0 == "transform") {
-            Some((_, text)) => outer.with(text)?,
-            None => outer,
-        };
-        if !alone {
-            around.push(place);
-        }
-        let mut own = PageShapes::default();
-        element(local, &attributes, &mut own)?;
-        place.put(own, &mut shapes);
     }
-    if known { Ok(shapes) } else { Err("it has no svg element".into()) }
+    Ok(None)
+}
+
+/// The name of an element, without and with its prefix, its attributes as text, and whether it has no content.
+fn parts_of(tag: &str) -> (&str, &str, &str, bool) {
+    let (body, alone) = tag.strip_suffix('/').map_or((tag, false), |t| (t, true));
+    let name = body.split(|c: char| c.is_whitespace()).next().unwrap_or("");
+    let local = name.rsplit(':').next().unwrap_or(name);
+    (local, name, &body[name.len()..], alone)
+}
+
+/// The elements with names, from their tags to their ends; none where nothing refers to them.
+fn named(text: &str) -> Result<HashMap<&str, &str>, String> {
+    let mut found = HashMap::new();
+    if !text.contains("<use") && !text.contains(":use") {
+        return Ok(found);
+    }
+    let mut open: Vec<(Option<&str>, usize)> = Vec::new();
+    let mut rest = text;
+    while let Some((after, tag)) = next_tag(rest)? {
+        rest = after;
+        let end = text.len() - after.len();
+        if tag.starts_with('/') {
+            if let Some((Some(id), start)) = open.pop() {
+                found.entry(id).or_insert(&text[start..end]);
+            }
+            continue;
+        }
+        let (_, _, own, alone) = parts_of(tag);
+        let id = attributes(own).unwrap_or_default().into_iter().find(|a| a.0 == "id").map(|a| a.1);
+        let start = end - tag.len() - 2;
+        match (alone, id) {
+            (true, Some(id)) => {
+                found.entry(id).or_insert(&text[start..end]);
+            }
+            (true, None) => {}
+            (false, id) => open.push((id, start)),
+        }
+    }
+    Ok(found)
+}
+
+/// The shapes that are read so far.
+struct SvgReading<'a> {
+    named: HashMap<&'a str, &'a str>,
+    shapes: PageShapes,
+    uses: usize,
+}
+
+impl<'a> SvgReading<'a> {
+    /// Adds the shapes of a text, of a reference if it is not the whole; returns whether there is an svg element.
+    fn elements(
+        &mut self,
+        text: &'a str,
+        base: SvgTransform,
+        depth: usize,
+    ) -> Result<bool, String> {
+        let mut known = depth > 0;
+        let mut hidden: Vec<&str> = Vec::new();
+        // The transforms of the elements around.
+        let mut around: Vec<SvgTransform> = Vec::new();
+        let mut rest = text;
+        let mut first = depth > 0;
+        while let Some((after, tag)) = next_tag(rest)? {
+            rest = after;
+            if let Some(name) = tag.strip_prefix('/') {
+                if hidden.is_empty() {
+                    around.pop();
+                } else if hidden.last().is_some_and(|h| *h == name.trim()) {
+                    hidden.pop();
+                }
+                continue;
+            }
+            let (local, name, own, alone) = parts_of(tag);
+            known |= local == "svg";
+            if !known {
+                return Err("it does not begin with an svg element".into());
+            }
+            let seen = std::mem::take(&mut first) && local == "symbol";
+            if !hidden.is_empty() || (UNSEEN.contains(&local) && !seen) {
+                if !alone {
+                    hidden.push(name);
+                }
+                continue;
+            }
+            let attributes = attributes(own)?;
+            let value = |wanted: &str| attributes.iter().find(|a| a.0 == wanted).map(|a| a.1);
+            if seen && value("viewBox").is_some() {
+                self.shapes.leave_out("symbol with a viewBox");
+                return Ok(known);
+            }
+            let outer = around.last().copied().unwrap_or(base);
+            let place = match value("transform") {
+                Some(text) => outer.with(text)?,
+                None => outer,
+            };
+            if !alone {
+                around.push(place);
+            }
+            if local == "use" {
+                let [x, y] = [number("use", &attributes, "x")?, number("use", &attributes, "y")?];
+                let name = value("href").or(value("xlink:href")).and_then(|t| t.strip_prefix('#'));
+                let Some(part) = name.and_then(|name| self.named.get(name).copied()) else {
+                    self.shapes.leave_out("use");
+                    continue;
+                };
+                self.uses += 1;
+                if self.uses > MOST_USES || depth == DEEPEST_USE {
+                    return Err("elements that use others do not end".into());
+                }
+                let moved = SvgTransform([1.0, 0.0, 0.0, 1.0, x, y]);
+                self.elements(part, place.after(moved), depth + 1)?;
+                continue;
+            }
+            let mut own = PageShapes::default();
+            match local {
+                "symbol" => {}
+                _ => element(local, &attributes, &mut own)?,
+            }
+            place.put(own, &mut self.shapes);
+        }
+        Ok(known)
+    }
 }
 
 /// End of a tag, outside quotes.
@@ -98,14 +195,17 @@ fn attributes(mut text: &str) -> Result<Vec<(&str, &str)>, String> {
     }
 }
 
+/// A number of an element, 0 without it.
+fn number(name: &str, attributes: &[(&str, &str)], wanted: &str) -> Result<f64, String> {
+    let Some((_, text)) = attributes.iter().find(|a| a.0 == wanted) else { return Ok(0.0) };
+    let plain = text.trim().trim_end_matches("px");
+    let x: Option<f64> = plain.parse().ok().filter(|x: &f64| x.is_finite());
+    x.ok_or_else(|| format!("`{wanted}` of `{name}` is not a plain number: {text}"))
+}
+
 fn element(name: &str, attributes: &[(&str, &str)], shapes: &mut PageShapes) -> Result<(), String> {
     let text = |wanted: &str| attributes.iter().find(|a| a.0 == wanted).map(|a| a.1);
-    let number = |wanted: &str| -> Result<f64, String> {
-        let Some(text) = text(wanted) else { return Ok(0.0) };
-        let plain = text.trim().trim_end_matches("px");
-        let x: Option<f64> = plain.parse().ok().filter(|x: &f64| x.is_finite());
-        x.ok_or_else(|| format!("`{wanted}` of `{name}` is not a plain number: {text}"))
-    };
+    let number = |wanted: &str| number(name, attributes, wanted);
     match name {
         "line" => {
             let ends = [[number("x1")?, -number("y1")?], [number("x2")?, -number("y2")?]];

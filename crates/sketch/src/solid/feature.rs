@@ -5,6 +5,7 @@ use super::blend_order::BlendSize;
 use super::combine::{CombineError, combined, united};
 use super::edges::FaceForm;
 pub use super::edges::TreatmentFault;
+use super::kept_bodies::{KeptBodies, KeptBody, numbers};
 use super::loft::lofted;
 use super::offset::{drafted, moved, shelled};
 use super::offset_section::moved_section;
@@ -13,19 +14,19 @@ use super::operation::Operation;
 use super::outline::FacetDensity;
 use super::outline_offset::offset_outline;
 use super::outline_sides::outline_sides;
-use super::pierced::{lie_apart, side_by_side};
+use super::pierced::{bored, lie_apart, side_by_side};
 use super::place::Similarity;
 use super::sweep_path::{SweepPath, border_path, drawn_path};
 use super::swept::{extruded, swept};
 use super::turn::turned;
-use super::validity::{SolidDefect, valid};
+use super::validity::{SolidDefect, valid, valid_turned};
 use super::{SketchSolid, unchecked};
 use crate::feature::{EdgeBlend, FaceChoice, Feature, FeatureKind, FeatureOperand, Placement};
 use crate::{DimensionExpr, DimensionLayout, Estimate, Planes, SketchObject, Variable, solve};
 use moldloft_num::{Real, Vec3};
 use std::any::Any;
-use std::collections::{BTreeMap, BTreeSet, VecDeque};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::collections::{BTreeMap, BTreeSet, HashMap};
+use std::sync::Arc;
 
 /// Reason why an object has no body.
 #[derive(Clone, Debug, PartialEq)]
@@ -100,7 +101,7 @@ pub(crate) fn body_kept(
     object: &Arc<SketchObject>,
     planes: &Planes,
     layout: &DimensionLayout<f64>,
-    kept: &Arc<KeptBodies>,
+    kept: &Arc<SessionBodies>,
 ) -> Result<SketchSolid<f64>, NoBody> {
     let mut plan = FacetPlan { kept: Arc::clone(kept), ..FacetPlan::default() };
     match object.feature {
@@ -110,12 +111,17 @@ pub(crate) fn body_kept(
     }
 }
 
+type Made = Result<SketchSolid<f64>, NoBody>;
+
+/// The latest bodies of a session.
+pub(crate) type SessionBodies = KeptBodies<Made>;
+
 /// Facets of a body: those that the features need that have it as an operand, in its own coordinates, and its own.
 #[derive(Clone, Default)]
 pub(super) struct FacetPlan {
     inherited: FacetDensity,
     own: FacetDensity,
-    kept: Arc<KeptBodies>,
+    kept: Arc<SessionBodies>,
 }
 
 impl FacetPlan {
@@ -153,7 +159,9 @@ impl FacetPlan {
         let plain = (&made as &dyn Any).downcast_ref::<Made>().map(|m| Arc::new(m.clone()));
         let FacetPlan { inherited, own, .. } = plan;
         let object = Arc::clone(object);
-        self.kept.keep(KeptBody { object, numbers, inherited, own, made: plain });
+        let body = plain.as_deref().and_then(|m: &Made| m.as_ref().ok());
+        let size = body.map_or(1, |body| body.vertices.len());
+        self.kept.keep(KeptBody { object, numbers, inherited, own, made: plain, size });
         made
     }
 
@@ -488,8 +496,16 @@ impl Feature {
                 }
             }
             (_, [..]) if empty.contains(&true) => Err(nothing()),
+            (FeatureKind::Boolean(Operation::Cut), [a, b]) if let Some(mut made) = bored(a, b) => {
+                made.density = plan.density();
+                valid(made).map_err(NoBody::Flaw)
+            }
             (FeatureKind::Boolean(operation), [a, b]) => {
-                combined([a, b], *operation).map_err(NoBody::Combine)
+                let apart = *operation == Operation::Union && lie_apart(&bodies);
+                match apart {
+                    true => Ok(side_by_side(bodies)),
+                    false => combined([a, b], *operation).map_err(NoBody::Combine),
+                }
             }
             (FeatureKind::Text(text), []) => {
                 let size = value(&text.size)?;
@@ -625,7 +641,9 @@ impl Feature {
         let name = |e: usize| side_name(&self.operands[0].object, section, e);
         let mut body = turned(section, [p, q], angle, &name).ok_or(NoBody::Axis)?;
         body.density = density;
-        valid(body).map_err(NoBody::Flaw)
+        // What meets about one axis meets in the section, which was checked.
+        let whole = angle.re().abs() >= std::f64::consts::TAU * (1.0 - 1e-12);
+        if whole { valid_turned(body) } else { valid(body) }.map_err(NoBody::Flaw)
     }
 
     /// An operand with its faces moved outwards by a distance, but for those of some names.
@@ -878,26 +896,46 @@ fn one_side<T: Real>(section: &SketchSolid<T>, [p, q]: [Vec3; 2]) -> bool {
     size > 0.0 && arms.iter().all(|a| a.dot(*farthest) >= -1e-9 * size)
 }
 
+/// The folded names of numbers of other objects in the expressions of objects, by their addresses.
+pub(crate) type ForeignNames = HashMap<*const SketchObject, Arc<BTreeSet<String>>>;
+
 /// The folded names of numbers of other objects in its expressions.
 pub fn foreign(object: &SketchObject) -> BTreeSet<String> {
+    BTreeSet::clone(&foreign_known(object, &mut ForeignNames::new()))
+}
+
+/// As [`foreign`], with those of objects that stay where they are, as its operands do.
+pub(crate) fn foreign_known(
+    object: &SketchObject,
+    known: &mut ForeignNames,
+) -> Arc<BTreeSet<String>> {
+    if let Some(found) = known.get(&std::ptr::from_ref(object)) {
+        return Arc::clone(found);
+    }
     let values = object.variables.values().map(|v| &v.value);
     let values = values.chain(object.dimensions.values().filter_map(|d| d.value.as_ref()));
     let sizes = object.curves.values().flat_map(|c| c.sizes());
     let feature = object.feature.iter();
     let kinds: Vec<DimensionExpr> = feature.clone().flat_map(|f| f.kind.numbers()).collect();
-    let names = |e: &DimensionExpr| e.names().map(str::to_owned).collect::<Vec<_>>();
     let reference = object.reference.iter().flat_map(|r| &r.at);
-    let own =
-        values.chain(sizes).chain(reference).flat_map(names).chain(kinds.iter().flat_map(names));
+    let other = |n: &&str| n.contains('.') && !object.has_name(n);
+    let all = values.chain(sizes).chain(reference).chain(&kinds);
+    let mut names: BTreeSet<String> =
+        all.flat_map(DimensionExpr::names).filter(other).map(str::to_owned).collect();
     // References of its operands are references of the feature, and so are the numbers of those that it follows.
-    let inner = feature.clone().flat_map(|f| &f.operands).flat_map(|o| foreign(&o.object));
-    let follows = feature.flat_map(|f| &f.operands).filter(|o| o.follows).flat_map(|o| {
-        let path = o.path();
-        let all: Vec<String> = o.object.own_numbers().map(|n| n.0.to_ascii_lowercase()).collect();
-        all.into_iter().map(move |n| format!("{path}{n}"))
-    });
-    let all = own.chain(inner).chain(follows);
-    all.filter(|n| n.contains('.') && !object.has_name(n)).collect()
+    for operand in feature.flat_map(|f| &f.operands) {
+        let inner = foreign_known(&operand.object, known);
+        names.extend(inner.iter().filter(|n| other(&n.as_str())).cloned());
+        if operand.follows {
+            let path = operand.path();
+            let own = operand.object.own_numbers();
+            let own = own.map(|n| format!("{path}{}", n.0.to_ascii_lowercase()));
+            names.extend(own.filter(|n| other(&n.as_str())));
+        }
+    }
+    let names = Arc::new(names);
+    known.insert(std::ptr::from_ref(object), Arc::clone(&names));
+    names
 }
 
 impl SketchObject {
@@ -928,73 +966,5 @@ impl SketchObject {
         }
         out.feature = made.feature;
         Some(Arc::new(out))
-    }
-}
-
-/// Maximum number of bodies that are kept.
-const MAX_KEPT: usize = 256;
-
-/// Maximum number of vertices of all of them.
-const MAX_VERTICES: usize = 100_000;
-
-type Made = Result<SketchSolid<f64>, NoBody>;
-
-/// A body, and of what it was made.
-#[derive(Debug)]
-struct KeptBody {
-    object: Arc<SketchObject>,
-    numbers: Vec<u64>,
-    inherited: FacetDensity,
-    /// The facets that it needed.
-    own: FacetDensity,
-    made: Option<Arc<Made>>,
-}
-
-impl KeptBody {
-    fn is_of(&self, object: &Arc<SketchObject>, numbers: &[u64], inherited: &FacetDensity) -> bool {
-        Arc::ptr_eq(&self.object, object) && self.numbers == numbers && self.inherited == *inherited
-    }
-
-    fn size(&self) -> usize {
-        let body = self.made.as_deref().and_then(|m| m.as_ref().ok());
-        body.map_or(1, |b| b.vertices.len())
-    }
-}
-
-/// The latest bodies of a session.
-#[derive(Debug, Default)]
-pub(crate) struct KeptBodies(Mutex<VecDeque<KeptBody>>);
-
-/// The bits of all that a body of an object depends on.
-fn numbers<T: Real>(layout: &DimensionLayout<T>) -> Vec<u64> {
-    let coordinates = layout.coordinates.iter().flatten();
-    let coordinates = coordinates.map(|x| x.map_or(u64::MAX, |x| x.re().to_bits()));
-    coordinates.chain(layout.values.values().map(|x| x.re().to_bits())).collect()
-}
-
-impl KeptBodies {
-    /// The facets that an object needed, and its body.
-    fn find(
-        &self,
-        object: &Arc<SketchObject>,
-        numbers: &[u64],
-        inherited: &FacetDensity,
-    ) -> Option<(FacetDensity, Option<Arc<Made>>)> {
-        let mut kept = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        let at = kept.iter().position(|k| k.is_of(object, numbers, inherited))?;
-        let body = kept.remove(at)?;
-        let found = (body.own.clone(), body.made.clone());
-        kept.push_back(body);
-        Some(found)
-    }
-
-    fn keep(&self, body: KeptBody) {
-        let mut kept = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        kept.retain(|k| !k.is_of(&body.object, &body.numbers, &body.inherited));
-        kept.push_back(body);
-        let mut vertices: usize = kept.iter().map(KeptBody::size).sum();
-        while kept.len() > MAX_KEPT || (vertices > MAX_VERTICES && kept.len() > 1) {
-            vertices -= kept.pop_front().as_ref().map_or(0, KeptBody::size);
-        }
     }
 }

@@ -10,6 +10,7 @@
 //! extended by their own heights, is the start of a Newton search for such a pair.
 
 use super::arrangement::{Facet, INNER, overlapping};
+use super::common_normals::SurfaceAbout;
 use super::curve::SmoothPiece;
 use super::facet_source::{FacetSource, along};
 use super::revolved::RevolvedSurface;
@@ -84,6 +85,16 @@ impl<T: Real> Stratum<'_, T> {
 
     fn straight(&self) -> bool {
         self.unknowns() == 0
+    }
+
+    fn about(&self) -> Option<SurfaceAbout> {
+        match self {
+            Stratum::Face(surface) => SurfaceAbout::of(surface),
+            Stratum::Plane { at, normal } => {
+                SurfaceAbout::of(&FaceSurface::Plane { at: *at, normal: *normal })
+            }
+            _ => None,
+        }
     }
 
     /// True at the pole of a surface, where its directions are not known; it is a vertex, which is searched for itself.
@@ -211,7 +222,9 @@ impl<T: Real> NearMissSearch<'_, T> {
             return Vec::new();
         }
         let mut rims: Vec<BTreeSet<u32>> = Vec::new();
-        let elements = self.elements(&mut rims);
+        let near: Vec<&Facet> =
+            if within { self.facets.iter().collect() } else { self.near_other().collect() };
+        let elements = self.elements(&near, &mut rims);
         let first = elements.iter().filter(|e| e.operand == 0).count();
         let grown: Vec<[Vec3; 2]> = (elements.iter())
             .map(|e| {
@@ -225,10 +238,22 @@ impl<T: Real> NearMissSearch<'_, T> {
         overlapping(&grown, 0.0, apart, |i, j| near.push((i, j)));
         near.sort_unstable();
         let mut places: Vec<Vec3> = Vec::new();
+        let mut lengths: HashMap<(usize, usize), Option<Vec<f64>>> = HashMap::new();
         for place in near.into_iter().filter_map(|(i, j)| {
             let (a, b) = (&elements[i], &elements[j]);
             if a.stratum.straight() && b.stratum.straight() {
                 return None;
+            }
+            if let ((0, f), (0, g)) = (a.rim, b.rim) {
+                let known = lengths.entry((f, g)).or_insert_with(|| {
+                    let [a, b] = [a.stratum.about()?, b.stratum.about()?];
+                    a.common_normals(&b, self.scale)
+                });
+                let (same, reach) = (TOUCHING[0] * self.scale, SAFE * (a.off + b.off));
+                let clear = |length: &f64| *length <= 0.5 * same || *length > 1.001 * reach + same;
+                if known.as_ref().is_some_and(|all| all.iter().all(clear)) {
+                    return None;
+                }
             }
             let joined = || {
                 let (r, s) = (&rims[a.rim.1], &rims[b.rim.1]);
@@ -247,7 +272,34 @@ impl<T: Real> NearMissSearch<'_, T> {
         places
     }
 
-    fn elements(&self, rims: &mut Vec<BTreeSet<u32>>) -> Vec<Element<'_, T>> {
+    /// Facets that may be near enough to the box of the other operand: no point of a facet or its sides is farther from
+    /// its exact element than they are wide.
+    fn near_other(&self) -> impl Iterator<Item = &Facet> {
+        let wide = |f: &Facet| {
+            let corners: Vec<Vec3> =
+                f.loops.iter().flatten().map(|&v| self.points[v as usize]).collect();
+            let [low, high] = bounds(&corners);
+            let by = SAFE * (high - low).norm() + TOUCHING[0] * self.scale;
+            let by = Vec3::new(by, by, by);
+            [low - by, high + by]
+        };
+        let boxes: Vec<[Vec3; 2]> = self.facets.iter().map(wide).collect();
+        let all = [0, 1].map(|operand| {
+            let own = self.facets.iter().zip(&boxes).filter(|(f, _)| f.operand == operand);
+            let corners: Vec<Vec3> = own.flat_map(|(_, b)| *b).collect();
+            (!corners.is_empty()).then(|| bounds(&corners))
+        });
+        self.facets.iter().zip(boxes).filter_map(move |(f, [low, high])| {
+            let [from, to] = all[1 - f.operand]?;
+            (0..3).all(|k| low[k] <= to[k] && high[k] >= from[k]).then_some(f)
+        })
+    }
+
+    fn elements<'a>(
+        &'a self,
+        facets: &[&'a Facet],
+        rims: &mut Vec<BTreeSet<u32>>,
+    ) -> Vec<Element<'a, T>> {
         // Vertices of faces and edges: only elements without a common one can have a false
         // intersection.
         let mut face_rim: BTreeMap<(usize, u32), usize> = BTreeMap::new();
@@ -258,7 +310,7 @@ impl<T: Real> NearMissSearch<'_, T> {
             rims.push(BTreeSet::new());
             rims.len() - 1
         };
-        for f in self.facets {
+        for &f in facets {
             let face = *face_rim.entry((f.operand, f.tag)).or_insert_with(|| new(rims));
             for (cycle, tags) in f.loops.iter().zip(&f.edges) {
                 for k in 0..cycle.len() {
@@ -278,10 +330,10 @@ impl<T: Real> NearMissSearch<'_, T> {
                 }
             }
         }
-        let mut out: Vec<Element<'_, T>> = Vec::new();
+        let mut out: Vec<Element<'a, T>> = Vec::new();
         let mut known: HashMap<(usize, u32, u32), Option<Vec3>> = HashMap::new();
         let mut last: HashMap<(usize, u32), [f64; 2]> = HashMap::new();
-        for f in self.facets {
+        for &f in facets {
             let source = &self.sources[f.operand];
             let surface = &source.surfaces[f.tag as usize];
             let own: Vec<u32> = f.loops.iter().flatten().copied().collect();

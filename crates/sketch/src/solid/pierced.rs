@@ -5,9 +5,10 @@ use super::curve::SmoothPiece;
 use super::drill::{DrillProfile, DrillRing, rotational};
 use super::edges::FaceForm;
 use super::place::Similarity;
-use super::{SketchSolid, SolidFace};
-use crate::PointId;
-use moldloft_num::{Box3, Real, Vec3};
+use super::surface::FaceSurface;
+use super::{SketchSolid, SolidEdge, SolidFace, Trim};
+use crate::{CoordinateAxis, PointId};
+use moldloft_num::{Axis, Box3, Real, Vec3};
 
 /// Maximum number of chords of an edge.
 const MOST_CHORDS: f64 = 512.0;
@@ -33,6 +34,92 @@ pub(super) fn pierced<T: Real>(
     drill: &DrillProfile<T>,
     images: &[Similarity<T>],
 ) -> Option<SketchSolid<T>> {
+    let k = drill.axis.index();
+    pierced_by(body, drill, images, &|rings| rotational(k, drill.centre, rings))
+}
+
+/// The body without a round bar, if that is a hole in it as those of [`pierced`].
+pub(super) fn bored<T: Real>(
+    body: &SketchSolid<T>,
+    bar: &SketchSolid<T>,
+) -> Option<SketchSolid<T>> {
+    let (drill, bar) = as_drill(bar)?;
+    let k = drill.axis.index();
+    let between = |rings: &[DrillRing<T>]| {
+        let levels = [&drill.rings[0], &drill.rings[1]].map(|r| r.level.re());
+        let level = |x: T| {
+            let [low, high] = levels.map(|level| (x.re() - level).abs());
+            rings[usize::from(high < low)].level
+        };
+        let moved = |p: Vec3<T>| {
+            let mut at = p.to_array();
+            at[k] = level(at[k]);
+            Vec3::from(at)
+        };
+        let mut out = bar.clone();
+        for v in &mut out.vertices {
+            v.at = moved(v.at);
+        }
+        for edge in &mut out.edges {
+            if let Some(SmoothPiece::Conic { centre, .. }) = &mut edge.piece {
+                *centre = moved(*centre);
+            }
+        }
+        out
+    };
+    pierced_by(body, &drill, &[Similarity::identity()], &between)
+}
+
+/// A round bar along an axis as a drill, and the bar with its lower and its upper end face first.
+fn as_drill<T: Real>(bar: &SketchSolid<T>) -> Option<(DrillProfile<T>, SketchSolid<T>)> {
+    let mut bar = bar.clone();
+    bar.faces.sort_by_key(|f| f.ruled);
+    let size = bar.vertices.iter().map(|v| v.at.re().norm()).fold(0.0, f64::max);
+    let zero = |x: T| (0..T::PARTS).all(|part| x.part(part).abs() <= SAME * size);
+    let [one, other, walls @ ..] = &bar.faces[..] else { return None };
+    let plain = bar.is_plain() && walls.iter().all(|f| f.ruled) && !one.ruled && !other.ruled;
+    let straight = bar.edges.iter().find(|e| e.piece.is_none()).filter(|_| plain)?;
+    let way = |e: &SolidEdge<T>| bar.vertices[e.ends[1]].at - bar.vertices[e.ends[0]].at;
+    let along = |way: Vec3<T>, k: CoordinateAxis| k.others().iter().all(|j| zero(way[j.index()]));
+    let axis = CoordinateAxis::ALL.into_iter().find(|k| along(way(straight), *k))?;
+    let k = axis.index();
+    let mut known: Option<(Vec3<T>, T)> = None;
+    let end = |face: &SolidFace, known: &mut Option<(Vec3<T>, T)>| -> Option<T> {
+        let [ring] = &face.loops[..] else { return None };
+        let (mut level, mut turned) = (None, 0.0);
+        for &(e, _) in ring {
+            let Some(SmoothPiece::Conic { centre, a, b, sweep }) = bar.edges[e].piece else {
+                return None;
+            };
+            let (own, radius) = *known.get_or_insert_with(|| (centre, a.norm()));
+            let height = *level.get_or_insert(centre[k]);
+            let round = zero(a.norm() - radius) && zero(b.norm() - radius);
+            let square = zero(a.dot(b) / radius) && zero(a[k]) && zero(b[k]);
+            if !round || !square || !along(centre - own, axis) || !zero(centre[k] - height) {
+                return None;
+            }
+            turned += sweep.re().abs();
+        }
+        level.filter(|_| (turned - std::f64::consts::TAU).abs() <= SAME)
+    };
+    let mut levels = [end(one, &mut known)?, end(other, &mut known)?];
+    let (centre, radius) = known?;
+    let upright = bar.edges.iter().all(|e| e.piece.is_some() || along(way(e), axis));
+    if levels[0].re() > levels[1].re() {
+        levels.reverse();
+        bar.faces.swap(0, 1);
+    }
+    let rings = levels.map(|level| DrillRing { radius, level, above: "" }).to_vec();
+    upright.then_some((DrillProfile { axis, centre, rings }, bar))
+}
+
+/// As [`pierced`], with the walls of each hole, and two end faces before them, by their rings.
+fn pierced_by<T: Real>(
+    body: &SketchSolid<T>,
+    drill: &DrillProfile<T>,
+    images: &[Similarity<T>],
+    made: &dyn Fn(&[DrillRing<T>]) -> SketchSolid<T>,
+) -> Option<SketchSolid<T>> {
     if !body.is_plain() {
         return None;
     }
@@ -54,7 +141,7 @@ pub(super) fn pierced<T: Real>(
         }
         let mouths = sides.mouths(body, sides.flat(centres[j]), clear, drill)?;
         let (rings, ends) = between(&drill.rings, &mouths, SAME * size)?;
-        let mut walls = rotational(k, drill.centre, &rings).placed(image);
+        let mut walls = made(&rings).placed(image);
         walls.turn_over();
         if j > 0 {
             walls.prefix_names(&format!("COPY{}.", j + 1));
@@ -289,9 +376,9 @@ fn distance(way: &[Vec3], p: Vec3) -> f64 {
     way.windows(2).map(one).fold(f64::INFINITY, f64::min)
 }
 
-/// True for plain solids whose boxes are apart.
+/// True for solids without intersections whose boxes are apart.
 pub(super) fn lie_apart<T: Real>(bodies: &[SketchSolid<T>]) -> bool {
-    if !bodies.iter().all(SketchSolid::is_plain) {
+    if !bodies.iter().all(SketchSolid::is_whole) {
         return false;
     }
     let boxes: Vec<Box3> = bodies.iter().map(around).collect();
@@ -303,8 +390,30 @@ pub(super) fn lie_apart<T: Real>(bodies: &[SketchSolid<T>]) -> bool {
     (1..boxes.len()).all(|j| boxes[..j].iter().all(|other| apart(&boxes[j], other)))
 }
 
-/// A box with all of a plain solid.
+/// A box with all of a solid.
 fn around<T: Real>(body: &SketchSolid<T>) -> Box3 {
+    // Circles about the axis through the ends and the control points of a profile hold what it turns into.
+    let turned = body.trims.iter().flat_map(|trim| match trim.surface {
+        FaceSurface::Turned { centre, axis, profile, .. } => {
+            let line = Axis { point: centre.re(), direction: axis.re() };
+            let ring = |p: Vec3| {
+                let foot = line.foot(p);
+                let far = p.distance(foot);
+                let d = line.direction;
+                let wide = Vec3::from([0, 1, 2].map(|k| far * (1.0 - d[k] * d[k]).max(0.0).sqrt()));
+                [foot - wide, foot + wide]
+            };
+            let corners = match profile {
+                SmoothPiece::Conic { centre, a, b, .. } => {
+                    let [c, a, b] = [centre, a, b].map(Vec3::re);
+                    [c + a + b, c + a - b, c - a + b, c - a - b]
+                }
+                SmoothPiece::Cubic(points) => points.map(Vec3::re),
+            };
+            corners.into_iter().flat_map(ring).collect::<Vec<_>>()
+        }
+        _ => Vec::new(),
+    });
     let corners = body.vertices.iter().map(|v| v.at.re());
     let curves = body.edges.iter().filter_map(|e| e.piece).flat_map(|piece| match piece {
         SmoothPiece::Conic { centre, a, b, .. } => {
@@ -314,7 +423,7 @@ fn around<T: Real>(body: &SketchSolid<T>) -> Box3 {
         }
         SmoothPiece::Cubic(points) => points.map(Vec3::re).to_vec(),
     });
-    Box3::around(corners.chain(curves))
+    Box3::around(corners.chain(curves).chain(turned))
 }
 
 /// Plain solids that are apart, as one.
@@ -331,22 +440,27 @@ pub(super) fn side_by_side<T: Real>(bodies: Vec<SketchSolid<T>>) -> SketchSolid<
 }
 
 impl<T: Real> SketchSolid<T> {
-    /// True for a solid without parts that come from an intersection of surfaces.
+    /// True for a solid without trimmed faces, and without parts that come from an intersection of surfaces.
     pub(super) fn is_plain(&self) -> bool {
+        self.trims.is_empty() && self.is_whole()
+    }
+
+    /// True for a solid without parts that come from an intersection of surfaces.
+    fn is_whole(&self) -> bool {
         let drawn = self.edges.iter().all(|e| e.trace.is_none() && e.own_ends.is_none());
         drawn
             && !self.flat
             && self.facets.is_none()
-            && self.trims.is_empty()
             && self.planes.is_empty()
             && self.strays.is_empty()
             && self.rates.is_empty()
     }
 
-    /// Adds the parts of a plain solid. Its first two faces are left out where `ends` has a face of this body: their
+    /// Adds the parts of a solid without intersections. Its first two faces are left out where `ends` has a face of this body: their
     /// loops become holes of that face.
     fn join(&mut self, other: SketchSolid<T>, ends: [Option<usize>; 2]) {
         let (vertices, edges) = (self.vertices.len(), self.edges.len());
+        let (faces, trims) = (self.faces.len(), self.trims.len());
         let label = self.vertices.iter().map(|v| v.id.0).max().unwrap_or(0);
         for mut v in other.vertices {
             v.id = PointId(label + v.id.0);
@@ -356,7 +470,10 @@ impl<T: Real> SketchSolid<T> {
             edge.ends = edge.ends.map(|v| v + vertices);
             self.edges.push(edge);
         }
+        let moved = |t: Trim<T>| Trim { face: faces + t.face, ..t };
+        self.trims.extend(other.trims.into_iter().map(moved));
         for (f, mut face) in other.faces.into_iter().enumerate() {
+            face.trim = face.trim.map(|k| trims + k);
             face.loops.iter_mut().flatten().for_each(|h| h.0 += edges);
             match ends.get(f).copied().flatten() {
                 Some(mouth) => self.faces[mouth].loops.append(&mut face.loops),

@@ -35,24 +35,61 @@ pub enum FaceSurface<T> {
     },
 }
 
+/// The points of a surface with one u, over v.
+enum ParameterLine<'a, T> {
+    Point(Vec3<T>),
+    Straight {
+        ends: [Vec3<T>; 2],
+        across: [Vec3<T>; 2],
+    },
+    Profile {
+        centre: &'a Vec3<T>,
+        axis: &'a Vec3<T>,
+        profile: &'a SmoothPiece<T>,
+        sweep: T,
+        /// Cosine and sine of the angle.
+        turn: [T; 2],
+    },
+}
+
+impl<T: Real> ParameterLine<'_, T> {
+    fn jet(&self, v: T) -> Jet<T> {
+        match self {
+            ParameterLine::Point(at) => [*at, Vec3::zero(), Vec3::zero()],
+            ParameterLine::Straight { ends: [a, b], across: [da, db] } => {
+                [a.lerp(*b, v), da.lerp(*db, v), *b - *a]
+            }
+            ParameterLine::Profile { centre, axis, profile, sweep, turn: [c, s] } => {
+                let (centre, axis, c, s) = (**centre, **axis, *c, *s);
+                let turned =
+                    |d: Vec3<T>| d * c + axis.cross(d) * s + axis * (axis.dot(d) * (-c + 1.0));
+                let arm = turned(profile.at(v) - centre);
+                [centre + arm, axis.cross(arm) * *sweep, turned(profile.velocity(v))]
+            }
+        }
+    }
+}
+
 /// A point of a surface with the derivatives by u and v.
 pub(crate) type Jet<T> = [Vec3<T>; 3];
 
 impl<T: Real> FaceSurface<T> {
     /// The point (u, v) with derivatives. Planes have no parameters.
     pub(crate) fn jet(&self, u: T, v: T) -> Jet<T> {
+        self.line(u).jet(v)
+    }
+
+    /// The line of the points with one u.
+    fn line(&self, u: T) -> ParameterLine<'_, T> {
         match self {
-            FaceSurface::Plane { at, .. } => [*at, Vec3::zero(), Vec3::zero()],
-            FaceSurface::Ruled { near, far } => {
-                let (a, b) = (near.at(u), far.at(u));
-                [a.lerp(b, v), near.velocity(u).lerp(far.velocity(u), v), b - a]
-            }
+            FaceSurface::Plane { at, .. } => ParameterLine::Point(*at),
+            FaceSurface::Ruled { near, far } => ParameterLine::Straight {
+                ends: [near.at(u), far.at(u)],
+                across: [near.velocity(u), far.velocity(u)],
+            },
             FaceSurface::Turned { centre, axis, profile, sweep } => {
-                let (c, s) = ((u * *sweep).cos(), (u * *sweep).sin());
-                let turned =
-                    |d: Vec3<T>| d * c + axis.cross(d) * s + *axis * (axis.dot(d) * (-c + 1.0));
-                let arm = turned(profile.at(v) - *centre);
-                [*centre + arm, axis.cross(arm) * *sweep, turned(profile.velocity(v))]
+                let turn = [(u * *sweep).cos(), (u * *sweep).sin()];
+                ParameterLine::Profile { centre, axis, profile, sweep: *sweep, turn }
             }
         }
     }
@@ -118,10 +155,11 @@ impl<T: Real> FaceSurface<T> {
         let parts = if matches!(self, FaceSurface::Ruled { .. }) { 1 } else { 3 };
         for &[u, v, du] in nodes {
             let length = v - start;
+            let line = self.line(u);
             for part in 0..parts {
                 for (x, w) in GAUSS_8_UNIT {
                     let x = (f64::from(part) + x) / f64::from(parts);
-                    let [p, a, b] = self.jet(u, start + length * x);
+                    let [p, a, b] = line.jet(start + length * x);
                     let weight = -(length * du) * (w / f64::from(parts));
                     let (density, sign) = (a.cross(b), if weight.re() < 0.0 { -1.0 } else { 1.0 });
                     let element = density * weight;
@@ -194,6 +232,9 @@ pub(crate) fn meet<T: Real>(
     start: &[[f64; 2]],
     scale: f64,
 ) -> Option<Met<T>> {
+    if let &[Carrier::Curve(piece), Carrier::Surface(FaceSurface::Plane { at, normal })] = on {
+        return curve_and_plane(piece, [*at, *normal], start[0][0], scale);
+    }
     let forms: Vec<CarrierForm<'_, T>> = on.iter().map(CarrierForm::of).collect();
     let n = 3 + forms.iter().map(CarrierForm::unknowns).sum::<usize>();
     let rows: usize = forms.iter().map(|o| if o.unknowns() == 0 { 1 } else { 3 }).sum();
@@ -297,4 +338,45 @@ pub(crate) fn meet<T: Real>(
     let (at, parameters) = split(&exact);
     let (moved, moved_parameters) = split(&rate);
     Some(Met { at, parameters, moved, moved_parameters })
+}
+
+/// The point of a curve in a plane, by its normal, near a parameter.
+fn curve_and_plane<T: Real>(
+    piece: &SmoothPiece<T>,
+    [at, normal]: [Vec3<T>; 2],
+    start: f64,
+    scale: f64,
+) -> Option<Met<T>> {
+    let (mut s, mut last) = (start, f64::INFINITY);
+    for step in 0..30 {
+        let off = normal.dot(piece.at(T::from(s)) - at).re();
+        let size = off.abs();
+        if !size.is_finite() {
+            return None;
+        }
+        let still = step > 3 && size >= 0.5 * last && size <= 1e-12 * scale;
+        last = size;
+        if size <= 1e-15 * scale || still {
+            break;
+        }
+        let rate = normal.dot(piece.velocity(T::from(s))).re();
+        if rate == 0.0 {
+            return None;
+        }
+        s -= (off / rate).clamp(-scale, scale);
+    }
+    if last > 1e-11 * scale {
+        return None;
+    }
+    let rate = normal.dot(piece.velocity(T::from(s)));
+    let s = T::from(s) - normal.dot(piece.at(T::from(s)) - at) / rate;
+    let way = piece.velocity(s);
+    let by = T::one() / normal.dot(way);
+    let none = [T::zero(); 2];
+    Some(Met {
+        at: piece.at(s),
+        parameters: vec![[s, T::zero()], none],
+        moved: way * by,
+        moved_parameters: vec![[by, T::zero()], none],
+    })
 }

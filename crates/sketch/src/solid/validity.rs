@@ -49,7 +49,23 @@ const MAX_COORDINATE: f64 = 1e60;
 ///
 /// # Errors
 /// [`SolidDefect`], with the position.
-pub fn valid<T: Real>(mut body: SketchSolid<T>) -> Result<SketchSolid<T>, SolidDefect> {
+pub fn valid<T: Real>(body: SketchSolid<T>) -> Result<SketchSolid<T>, SolidDefect> {
+    checked(body, true)
+}
+
+/// As [`valid`], for a body that does not cross itself.
+///
+/// # Errors
+/// [`SolidDefect`], with the position.
+pub(super) fn valid_turned<T: Real>(body: SketchSolid<T>) -> Result<SketchSolid<T>, SolidDefect> {
+    checked(body, false)
+}
+
+fn checked<T: Real>(
+    mut body: SketchSolid<T>,
+    crossing: bool,
+) -> Result<SketchSolid<T>, SolidDefect> {
+    let clear = |body| if crossing { clear(body) } else { Ok(body) };
     // Derivatives may be undefined for a valid body.
     let within = |v: &Vec3| v.to_array().iter().all(|x| x.abs() <= MAX_COORDINATE);
     if body.vertices.iter().any(|v| !within(&v.at.re())) {
@@ -67,7 +83,7 @@ pub fn valid<T: Real>(mut body: SketchSolid<T>) -> Result<SketchSolid<T>, SolidD
     if !open.is_empty() {
         return Err(SolidDefect::Open(open));
     }
-    let suspect = suspect(&body, &outline);
+    let suspect = crossing && suspect(&body, &outline);
     if !suspect && shells(&body, &outline) == Shells::Outward {
         return clear(body);
     }

@@ -66,3 +66,31 @@ fn shapes_of_a_picture() {
         assert!(svg_shapes(bad).is_err(), "{bad}");
     }
 }
+
+#[test]
+fn elements_drawn_by_reference() {
+    // A line of the definitions moved twice, a group with one inside, a symbol, and one that is drawn later.
+    let text = "<svg><defs><line id='a' x2='1'/><g id='b' transform='scale(2)'><use href='#a' x='3'/></g>\
+        <symbol id='s'><line x2='7'/></symbol></defs><use xlink:href='#a' x='10' y='-5'/>\
+        <use href='#b' transform='translate(100 0)'/><use href='#s' y='1'/><use href='#c'/>\
+        <line id='c' x1='20' x2='21'/><use href='#none'/><use href='other.svg#a'/></svg>";
+    let shapes = svg_shapes(text).unwrap();
+    let wanted = [
+        [[10.0, 5.0], [11.0, 5.0]],
+        [[106.0, 0.0], [108.0, 0.0]],
+        [[0.0, -1.0], [7.0, -1.0]],
+        [[20.0, 0.0], [21.0, 0.0]],
+        [[20.0, 0.0], [21.0, 0.0]],
+    ];
+    assert_eq!(shapes.strokes, wanted);
+    assert_eq!(shapes.left_out.get("use"), Some(&2));
+    // References in a circle, and more than anyone draws.
+    let circle = "<svg><g id='a'><use href='#b'/></g><g id='b'><use href='#a'/></g></svg>";
+    assert!(svg_shapes(circle).is_err());
+    let mut many = String::from("<svg><line id='n0' x2='1'/>");
+    for k in 1..20 {
+        let twice = format!("<use href='#n{}'/>", k - 1).repeat(2);
+        many.push_str(&format!("<g id='n{k}'>{twice}</g>"));
+    }
+    assert!(svg_shapes(&(many + "</svg>")).is_err());
+}

@@ -18,25 +18,33 @@ pub(super) fn windings(
     sheets: &[PlaneCoordinates],
     regions: &[ArrangedRegion],
 ) -> Result<Vec<[Turns; 2]>, ArrangeError> {
-    let mut wings: BTreeMap<(u32, u32), Vec<(f64, usize, bool)>> = BTreeMap::new();
+    // The sides of regions, by their lower and higher end; the flag tells that they begin there.
+    let mut wings: Vec<(u32, u32, usize, bool)> = Vec::new();
     for (r, region) in regions.iter().enumerate() {
         for cycle in &region.loops {
             for k in 0..cycle.len() {
                 let (a, b) = (cycle[k], cycle[(k + 1) % cycle.len()]);
-                let (low, high) = (a.min(b), a.max(b));
-                let d = pool.at(high) - pool.at(low);
-                let x = d.perpendicular();
-                let y = d.cross(x).normalized().unwrap_or_default();
-                let x = x.normalized().unwrap_or_default();
-                let inward = sheets[region.sheet].normal.cross(pool.at(b) - pool.at(a));
-                let angle = Real::atan2(inward.dot(y), inward.dot(x));
-                wings.entry((low, high)).or_default().push((angle, r, a == low));
+                wings.push((a.min(b), a.max(b), r, a < b));
             }
         }
     }
+    wings.sort_unstable();
+    let angle = |&(low, high, r, up): &(u32, u32, usize, bool)| {
+        let d = pool.at(high) - pool.at(low);
+        let x = d.perpendicular();
+        let y = d.cross(x).normalized().unwrap_or_default();
+        let x = x.normalized().unwrap_or_default();
+        let along = if up { d } else { -d };
+        let inward = sheets[regions[r].sheet].normal.cross(along);
+        Real::atan2(inward.dot(y), inward.dot(x))
+    };
     let mut sets = UnionFind::new(2 * regions.len());
     let mut parts = UnionFind::new(regions.len());
-    for around in wings.values_mut() {
+    for own in wings.chunk_by(|a, b| (a.0, a.1) == (b.0, b.1)) {
+        // Two are neighbours on both sides, at any angle.
+        let turned = |w| if own.len() > 2 { angle(w) } else { 0.0 };
+        let mut around: Vec<(f64, usize, bool)> =
+            own.iter().map(|w| (turned(w), w.2, w.3)).collect();
         around.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
         let n = around.len();
         for k in 0..n {

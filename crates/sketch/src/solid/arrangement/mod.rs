@@ -19,7 +19,7 @@ use moldloft_num::Vec3;
 use moldloft_num::union_find::UnionFind;
 use plane::{PlaneCoordinates, common_segments, facet_winding};
 pub(super) use pool::overlapping;
-use pool::{Pool, bounds};
+use pool::{PointCells, Pool, bounds};
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
 /// Tag of an edge that is not part of an edge of the body.
@@ -382,40 +382,34 @@ type Chains = HashMap<(u32, u32), Vec<u32>>;
 
 /// Segments with other points on them, as chains of points.
 fn split(pool: &Pool, segments: impl Iterator<Item = (u32, u32)>) -> Chains {
-    let [low, high] = bounds(pool.points.iter().copied());
-    let axis =
-        (0..3).max_by(|&a, &b| (high[a] - low[a]).total_cmp(&(high[b] - low[b]))).unwrap_or(0);
-    let mut order: Vec<u32> = (0..pool.points.len() as u32).collect();
-    order.sort_by(|&a, &b| pool.at(a)[axis].total_cmp(&pool.at(b)[axis]).then(a.cmp(&b)));
-    let keys: Vec<f64> = order.iter().map(|&v| pool.at(v)[axis]).collect();
+    let near = PointCells::new(&pool.points);
     let mut chains = Chains::new();
     for (a, b) in segments {
         if chains.contains_key(&(a, b)) {
             continue;
         }
         let (p, q) = (pool.at(a), pool.at(b));
-        let [low, high] = bounds([p, q].into_iter());
         let margin = 2.0 * pool.tolerance;
-        let from = keys.partition_point(|&x| x < low[axis] - margin);
-        let to = keys.partition_point(|&x| x <= high[axis] + margin);
+        let wide = Vec3::new(margin, margin, margin);
+        let [low, high] = bounds([p, q].into_iter());
         let d = q - p;
         let length = d.norm();
         let mut inner: Vec<(f64, u32)> = Vec::new();
-        for &v in &order[from..to] {
+        near.each([low - wide, high + wide], |v| {
             if v == a || v == b {
-                continue;
+                return;
             }
             let x = pool.at(v);
             if (0..3).any(|k| x[k] < low[k] - margin || x[k] > high[k] + margin) {
-                continue;
+                return;
             }
             let t = (x - p).dot(d) / length;
             if t > 0.0 && t < length && (p + d * (t / length)).distance(x) <= margin {
                 inner.push((t, v));
             }
-        }
+        });
         if !inner.is_empty() {
-            inner.sort_by(|x, y| x.0.total_cmp(&y.0));
+            inner.sort_by(|x, y| x.0.total_cmp(&y.0).then(x.1.cmp(&y.1)));
             let chain = std::iter::once(a).chain(inner.into_iter().map(|i| i.1)).chain([b]);
             chains.insert((a, b), chain.collect());
         }
@@ -447,6 +441,19 @@ fn all_regions(
     let mut other = false;
     for (s, own) in members.iter().enumerate() {
         let sheet = &sheets[s];
+        let lonely = alone(facets, own, &segments[s], chains).filter(|ring| {
+            let flat: Vec<[f64; 2]> = ring.iter().map(|&v| sheet.flat(pool.at(v))).collect();
+            regions::area(&flat) > pool.tolerance * pool.tolerance
+        });
+        if let Some(ring) = lonely {
+            let loops = vec![ring];
+            let Some(inner) = regions::inner_point(pool, sheet, &loops) else { continue };
+            let mut turns = [0; 2];
+            turns[facets[own[0]].operand] = 1;
+            let (inner, covers) = (sheet.lift(inner), own.clone());
+            found.push(ArrangedRegion { sheet: s, loops, turns, inner, covers });
+            continue;
+        }
         let mut graph: BTreeSet<(u32, u32)> = BTreeSet::new();
         for &(a, b) in &segments[s] {
             for pair in chain_of(chains, a, b).windows(2) {
@@ -488,6 +495,27 @@ fn all_regions(
         }
     }
     Ok((found, other, shared))
+}
+
+/// The border of a triangle that is alone in its sheet, which nothing divides: from the end of its lowest side.
+fn alone(
+    facets: &[Facet],
+    own: &[usize],
+    segments: &BTreeSet<(u32, u32)>,
+    chains: &Chains,
+) -> Option<Vec<u32>> {
+    let [f] = own else { return None };
+    let [ring] = &facets[*f].loops[..] else { return None };
+    let n = ring.len();
+    if n > 4 || segments.len() != n || segments.iter().any(|side| chains.contains_key(side)) {
+        return None;
+    }
+    let &(a, b) = segments.first()?;
+    let first = (0..n).find(|&k| {
+        let side = (ring[k], ring[(k + 1) % n]);
+        side == (a, b) || side == (b, a)
+    })?;
+    Some((0..n).map(|k| ring[(first + k) % n]).collect())
 }
 
 /// The common property of pieces that join.

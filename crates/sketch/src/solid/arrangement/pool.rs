@@ -3,6 +3,9 @@
 use moldloft_num::Vec3;
 use std::collections::HashMap;
 
+/// The size of a cell of points, in tolerances: few points are near the border of theirs.
+const CELL: f64 = 64.0;
+
 /// Points that are equal within a tolerance share a number.
 pub(super) struct Pool {
     pub points: Vec<Vec3>,
@@ -16,20 +19,24 @@ impl Pool {
     }
 
     fn cell(&self, p: Vec3) -> [i64; 3] {
-        let size = 4.0 * self.tolerance;
+        let size = CELL * self.tolerance;
         p.to_array().map(|x| (x / size).floor().clamp(-9e15, 9e15) as i64)
     }
 
     /// Number of the point at `p`, a new one if necessary.
     pub fn add(&mut self, p: Vec3) -> u32 {
-        let own = self.cell(p);
+        let reach = Vec3::new(self.tolerance, self.tolerance, self.tolerance);
+        let (low, high) = (self.cell(p - reach), self.cell(p + reach));
         let mut best: Option<(f64, u32)> = None;
-        for k in 0..27i64 {
-            let near = [own[0] + k % 3 - 1, own[1] + k / 3 % 3 - 1, own[2] + k / 9 - 1];
-            for &v in self.cells.get(&near).into_iter().flatten() {
-                let distance = self.points[v as usize].distance(p);
-                if distance <= self.tolerance && best.is_none_or(|b| distance < b.0) {
-                    best = Some((distance, v));
+        for z in low[2]..=high[2] {
+            for y in low[1]..=high[1] {
+                for x in low[0]..=high[0] {
+                    for &v in self.cells.get(&[x, y, z]).into_iter().flatten() {
+                        let distance = self.points[v as usize].distance(p);
+                        if distance <= self.tolerance && best.is_none_or(|b| distance < b.0) {
+                            best = Some((distance, v));
+                        }
+                    }
                 }
             }
         }
@@ -38,12 +45,72 @@ impl Pool {
         }
         let v = self.points.len() as u32;
         self.points.push(p);
+        let own = self.cell(p);
         self.cells.entry(own).or_default().push(v);
         v
     }
 
     pub fn at(&self, v: u32) -> Vec3 {
         self.points[v as usize]
+    }
+}
+
+/// The most cells along an axis.
+const MOST_ALONG: usize = 32;
+
+/// Points by the cells of a grid over all of them.
+pub(super) struct PointCells {
+    low: Vec3,
+    /// Cells for a unit of length, by axis.
+    rate: [f64; 3],
+    along: usize,
+    /// The first of each cell's points.
+    first: Vec<u32>,
+    points: Vec<u32>,
+}
+
+impl PointCells {
+    pub fn new(points: &[Vec3]) -> PointCells {
+        let [low, high] = bounds(points.iter().copied());
+        let enough = |n: &usize| n.pow(3) >= points.len();
+        let along = (1..MOST_ALONG).find(enough).unwrap_or(MOST_ALONG);
+        let rate = [0, 1, 2].map(|k| {
+            let wide = high[k] - low[k];
+            if wide > 0.0 { along as f64 / wide } else { 0.0 }
+        });
+        let mut out = PointCells { low, rate, along, first: Vec::new(), points: Vec::new() };
+        let cells: Vec<usize> = points.iter().map(|p| out.number(out.cell(*p))).collect();
+        let mut first = vec![0; along.pow(3) + 1];
+        cells.iter().for_each(|c| first[c + 1] += 1);
+        (0..along.pow(3)).for_each(|c| first[c + 1] += first[c]);
+        let mut next = first.clone();
+        out.points = vec![0; points.len()];
+        for (v, c) in cells.into_iter().enumerate() {
+            out.points[next[c] as usize] = v as u32;
+            next[c] += 1;
+        }
+        out.first = first;
+        out
+    }
+
+    fn cell(&self, p: Vec3) -> [usize; 3] {
+        [0, 1, 2].map(|k| (((p[k] - self.low[k]) * self.rate[k]) as usize).min(self.along - 1))
+    }
+
+    fn number(&self, [x, y, z]: [usize; 3]) -> usize {
+        (z * self.along + y) * self.along + x
+    }
+
+    /// The points of all cells that a box overlaps.
+    pub fn each(&self, [low, high]: [Vec3; 2], mut found: impl FnMut(u32)) {
+        let (low, high) = (self.cell(low), self.cell(high));
+        for z in low[2]..=high[2] {
+            for y in low[1]..=high[1] {
+                let [from, to] = [low[0], high[0]].map(|x| self.number([x, y, z]));
+                let row = self.first[from] as usize..self.first[to + 1] as usize;
+                self.points[row].iter().for_each(|v| found(*v));
+            }
+        }
     }
 }
 
