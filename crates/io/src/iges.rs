@@ -460,9 +460,11 @@ mod tests {
             "S{:>7}G{:>7}D{:>7}P{:>7}",
             count('S'),
             count('G'),
-            6,
+            8,
             count('P')
         )));
         assert!(text.contains("314,100.,0.,20.;") && text.contains("2,2HMM,"));
+        // The name of the level of the wire.
+        assert!(text.contains("406,2,0,4Hkeel;"));
     }
 }

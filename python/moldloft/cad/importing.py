@@ -177,8 +177,9 @@ def _loadable(found: Imported, name: str, units: str) -> tuple[str, Model]:
                 return text, model
             for name_of, share in shares.items():
                 # What a panel misses is as the square of its size.
-                factor = finer.get(name_of, 1.0) * max(1.2, (1.2 * share / _PROMISE) ** 0.5)
-                finer[name_of] = min(factor, _FINEST)
+                factor = max(1.2, (1.2 * share / _PROMISE) ** 0.5)
+                # In steps: the same part has the same divisions wherever it is placed.
+                finer[name_of] = min(finer.get(name_of, 1.0) * np.ceil(4 * factor) / 4, _FINEST)
             continue
         words = set().union(*(_blamed(d, text) for d in faults))
         joined = {word for word in words if re.fullmatch(r"join\d+_*", word)} - apart
@@ -205,7 +206,7 @@ _EXACT = 1e-5
 """Relative difference of area below which a face is not the cause of a missed volume."""
 
 
-_FAR = 1e-4
+_FAR = 1e-5
 """Volume, relative to the cones from the origin to the faces, below which these do not give it."""
 
 _FINEST = 16.0
@@ -243,25 +244,49 @@ def _missed(found: Imported, model: Model) -> tuple[dict[str, float], list[str]]
             shares[name] = max(shares.get(name, 0.0), share)
     if not mesh.closed or len(by_face) < len(found.faces):
         return shares, said
-    cones = {
-        face.name: cone_volume(face.surface) if face.natural else model[face.name].volume
-        for face in found.faces
-    }
-    # The sides are those of the panels.
-    volume = sum(
-        min((cone, -cone), key=lambda x: abs(x - patches[name].volume))
-        for name, cone in cones.items()
-    )
-    share = abs(abs(mesh.volume / volume) - 1) if volume else 0.0
-    if share > _PROMISE and abs(volume) > _FAR * max(map(abs, cones.values())):
-        said.append(
-            f"the panels enclose {abs(mesh.volume):.6g}, {abs(mesh.volume / volume) - 1:+.1e} "
-            f"of the volume {abs(volume):.6g}: state finer `divisions`, or a tolerance"
+    for body in _bodies(found):
+        cones = {
+            face.name: cone_volume(face.surface) if face.natural else model[face.name].volume
+            for face in body
+        }
+        panels = sum(patches[name].volume for name in cones)
+        # The sides are those of the panels.
+        volume = sum(
+            min((cone, -cone), key=lambda x: abs(x - patches[name].volume))
+            for name, cone in cones.items()
         )
-        for face in found.faces:
-            if face.natural and by_face.get(face.name, 0.0) > _EXACT:
+        share = abs(panels / volume - 1) if volume else 0.0
+        if share <= _PROMISE or abs(volume) < _FAR * max(map(abs, cones.values())):
+            continue
+        said.append(
+            f"the panels of the body of `{body[0].name}` enclose {abs(panels):.6g}, "
+            f"{panels / volume - 1:+.1e} of its volume {abs(volume):.6g}: state finer "
+            "`divisions`, or a tolerance"
+        )
+        for face in body:
+            if face.natural and by_face[face.name] > _EXACT:
                 shares[face.name] = max(shares.get(face.name, 0.0), share)
     return shares, said
+
+
+def _bodies(found: Imported) -> list[list[ImportedFace]]:
+    """The faces that hang together along edges."""
+    of_edge: dict[int, int] = {}
+    root = list(range(len(found.faces)))
+
+    def first(k: int) -> int:
+        while root[k] != k:
+            root[k] = root[root[k]]
+            k = root[k]
+        return k
+
+    for k, face in enumerate(found.faces):
+        for side in face.sides:
+            root[first(k)] = first(of_edge.setdefault(side.edge, k))
+    bodies: dict[int, list[ImportedFace]] = {}
+    for k, face in enumerate(found.faces):
+        bodies.setdefault(first(k), []).append(face)
+    return list(bodies.values())
 
 
 def _blamed(fault: Any, text: str) -> set[str]:

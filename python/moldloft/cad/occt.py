@@ -528,7 +528,7 @@ class _Converted:
             return np.inf
         made = self._together.Shape()
         apart = [BRep_Tool.Tolerance_s(TopoDS.Edge(edge)) for edge in faces_of(made, TopAbs_EDGE)]
-        return abs(_curved_area(made) / area - 1) + max(apart, default=0.0) / area**0.5
+        return float(abs(_curved_area(made) / area - 1) + max(apart, default=0.0) / area**0.5)
 
     def takes(self, part: Any) -> bool:
         """True if OCCT can convert a face."""

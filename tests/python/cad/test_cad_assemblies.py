@@ -225,6 +225,6 @@ def test_layers_come_back_as_tags(ending: str, tmp_path: Path) -> None:
     with pytest.warns() if ending == "igs" else contextlib.nullcontext():
         model = load_cad(path)
     tags = {p.name: {*p.tags} - {"s__t"} for p in model.mesh().patches}
-    # IGES has one level for each entity, by number.
+    # IGES has one level for each entity.
     known = {"s": {"hull"}, "t": {"deck", "wood"}}
-    assert tags == (known if ending == "step" else {"s": {"level_1"}, "t": {"level_2"}})
+    assert tags == (known if ending == "step" else {"s": {"hull"}, "t": {"deck"}})

@@ -93,7 +93,7 @@ impl KinkPlane<'_> {
                 } else if t.abs() > near && s * t < 0.0 {
                     let share = s / (s - t);
                     let at = a[1 - axis] + share * (b[1 - axis] - a[1 - axis]);
-                    let length = (b[0] - a[0]).hypot(b[1] - a[1]);
+                    let length = ((b[0] - a[0]).powi(2) + (b[1] - a[1]).powi(2)).sqrt();
                     met.push(RimMeeting { at, how: Err(length) });
                 }
             }
