@@ -62,7 +62,11 @@ def apart(sketch: Sketch, name: str, folder: Path) -> dict[str, float]:
     step = read(path)
     if step is not None:
         top = float(mesh.vertices.max()) + 1.0
-        differences["STEP"] = step.hydrostatics(level=top).volume / volume - 1
+        try:
+            differences["STEP"] = step.hydrostatics(level=top).volume / volume - 1
+        except moldloft.ModelError as error:
+            # Loops within a chord of touching are read, but do not join their neighbours.
+            assert "the skin is open" in str(error), str(error)
     return differences
 
 
