@@ -1613,7 +1613,7 @@ def volume(
     """The volume of a set within a box, by a high-order rule; `volume_bracket` gives guaranteed bounds.
 
     Default box: the bounds of the set; an unbounded set needs a box. Faces of the box cut
-    the set.
+    the set. Volume and area of the body of a sketch are those of its faces, exact.
 
     Parameters
     ----------
@@ -1647,7 +1647,7 @@ def area(
     """The area of the surface of a set within a box, sheets counted once.
 
     Default box: the bounds of the set; an unbounded set needs a box. Faces of the box cut
-    the set.
+    the set. Volume and area of the body of a sketch are those of its faces, exact.
 
     Parameters
     ----------
@@ -1681,7 +1681,7 @@ def wire_length(
     """The length of the wires of a set within a box: curves in which two sheets meet.
 
     Default box: the bounds of the set; an unbounded set needs a box. Faces of the box cut
-    the set.
+    the set. Volume and area of the body of a sketch are those of its faces, exact.
 
     Parameters
     ----------
@@ -1715,7 +1715,7 @@ def mass_centre(
     """The centre of mass of a set within a box.
 
     Default box: the bounds of the set; an unbounded set needs a box. Faces of the box cut
-    the set.
+    the set. Volume and area of the body of a sketch are those of its faces, exact.
 
     Parameters
     ----------
@@ -1749,7 +1749,7 @@ def inertia(
     """The rows of the matrix of inertia of a set of density 1 about its centroid.
 
     Default box: the bounds of the set; an unbounded set needs a box. Faces of the box cut
-    the set.
+    the set. Volume and area of the body of a sketch are those of its faces, exact.
 
     Parameters
     ----------
