@@ -31,7 +31,7 @@ impl NumberPlaces {
         for (key, name, value) in literals(object) {
             let place = (object.name.clone(), key.clone());
             let named = words.iter().any(|(_, word)| word.eq_ignore_ascii_case(name));
-            if !named && !(more && !self.places.contains_key(&place)) {
+            if !(named || more && !self.places.contains_key(&place)) {
                 continue;
             }
             let behind = line.find('=').unwrap_or(0);
