@@ -173,7 +173,7 @@ def _loadable(found: Imported, name: str, units: str) -> tuple[str, Model]:
         if not faults:
             shares, missed = _missed(found, model)
             if not shares or any(finer.get(face, 1.0) >= _FINEST for face in shares):
-                found.remarks += missed + _inward(model)
+                found.remarks += missed + _inward(model) + _open(found, model)
                 return text, model
             for name_of, share in shares.items():
                 # What a panel misses is as the square of its size.
@@ -267,6 +267,28 @@ def _missed(found: Imported, model: Model) -> tuple[dict[str, float], list[str]]
             if face.natural and by_face[face.name] > _EXACT:
                 shares[face.name] = max(shares.get(face.name, 0.0), share)
     return shares, said
+
+
+def _open(found: Imported, model: Model) -> list[str]:
+    """Remarks on bodies whose panels are open along edges that are short for their area."""
+    try:
+        mesh = model.mesh()
+        edges = [] if mesh.closed else mesh.closure()["edges"]
+    except Error:
+        return []
+    areas = {patch.name: patch.area for patch in mesh.patches}
+    said = []
+    for body in _bodies(found):
+        names = {face.name for face in body} & areas.keys()
+        loose = [edge for edge in edges if edge["patch"] in names]
+        length = sum(edge["length"] for edge in loose)
+        if 0 < length < sum(areas[name] for name in names) ** 0.5:
+            along = ", ".join(f"`{name}`" for name in sorted({edge["patch"] for edge in loose}))
+            said.append(
+                f"the panels of the body of `{body[0].name}` are open along {along}, "
+                f"over a length of {length:.3g}"
+            )
+    return said
 
 
 def _bodies(found: Imported) -> list[list[ImportedFace]]:

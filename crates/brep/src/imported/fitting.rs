@@ -77,6 +77,9 @@ pub(super) struct FollowedPath<'a> {
     pub cuts: Vec<f64>,
 }
 
+/// Kinks within this distance of a parameter are one.
+const SAME_KINK: f64 = 1e-9;
+
 struct FittedPiece {
     to: f64,
     points: [[f64; 2]; DEGREE + 1],
@@ -87,7 +90,11 @@ pub(super) fn followed(goal: &FollowedPath, near: f64) -> Option<(Nurbs<1>, f64)
     let mut pieces = Vec::new();
     let mut worst = 0.0f64;
     let mut stops = vec![0.0];
-    stops.extend(&goal.kinks);
+    for &kink in &goal.kinks {
+        if kink - stops[stops.len() - 1] > SAME_KINK && 1.0 - kink > SAME_KINK {
+            stops.push(kink);
+        }
+    }
     stops.push(1.0);
     for w in stops.windows(2) {
         divided(goal, near, [w[0], w[1]], &mut pieces, &mut worst)?;
