@@ -868,7 +868,7 @@ fn trimmed_surfaces_join_each_other_and_tell_contradictions() {
              SubSurf cap({{ring, m}}, divisions = {divisions});"
         )
     };
-    let mut d = sound(&round("{14, 3}"));
+    let mut d = sound(&round("{40, 3}"));
     assert_eq!(pieces(&mut d), (1, 1));
     let p = panelled(&mut d);
     assert!((area(&p, "rest") + area(&p, "cap") - 12.0).abs() < 1e-12);
