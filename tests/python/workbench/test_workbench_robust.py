@@ -298,6 +298,8 @@ def test_a_page_finds_the_next_server_and_joins_both_texts(bench: Callable[..., 
     b.page.keyboard.insert_text("AbsPoint Q(1, 1, 1);\n")
     b.page.keyboard.press("Control+s")
     b.until(lambda: b.path.read_text(encoding="utf-8") == b.text())
+    # Saved is what has no draft.
+    b.until(lambda: not b.path.with_name(f".{b.path.name}.draft").exists())
     saved = b.text()
     b.kill()
     b.page.get_by_text("The server does not answer").wait_for()
