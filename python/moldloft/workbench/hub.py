@@ -282,8 +282,8 @@ class Hub:
         elif isinstance(kind, str) and kind in STUDY_KINDS:
             self.later(self._study(tab, message))
         elif room := next((r for r in self.rooms if r.room.takes(kind)), None):
-            own = message.get("file")
-            if own and own not in self.others:
+            own = message.get("file") or ""
+            if own and not (isinstance(own, str) and own in self.others):
                 self.refuse(tab, number, f"`{own}` is not open here")
             elif unsaved := self._unsaved(own):
                 # Rooms read files, not the texts that count before they are saved.
@@ -337,7 +337,7 @@ class Hub:
             raise ValueError(f"`{name}` is no longer open")
         return name, text.version, text.text
 
-    def _unsaved(self, own: str | None) -> str:
+    def _unsaved(self, own: str) -> str:
         """Names of unsaved files that a room may read beside the text that it is about."""
         dirty = [
             Path(name).name for name, text in self.others.items() if text.dirty and name != own

@@ -88,6 +88,17 @@ def test_a_file_counts_before_it_is_saved(folder: Path) -> None:
     workbench(folder / "model.sdl", play)
 
 
+def test_rooms_take_open_files_alone(folder: Path) -> None:
+    async def play(hub: Any) -> None:
+        page = Page(hub)
+        await page.ask("open")
+        for wrong in (str(folder / "part.sdl"), "nobody.skt", ["part.sdl"], 3, {"a": 1}):
+            refused = await page.ask("board_open", file=wrong)
+            assert refused["kind"] == "refused" and "is not open here" in refused["error"]
+
+    workbench(folder / "model.sdl", play)
+
+
 def test_drafts_of_files_are_found_by_the_next_server(folder: Path) -> None:
     part = folder / "part.sdl"
     name = str(part)
