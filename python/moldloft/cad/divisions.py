@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from moldloft.cad.faces import ImportedFace, border
+from moldloft.cad.faces import ImportedFace, border, together
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -49,30 +49,21 @@ def divisions(faces: list[ImportedFace], finer: Mapping[str, float]) -> dict[str
         Factors of the divisions of some faces.
     """
     whole = [face for face in faces if face.natural]
-    root = list(range(2 * len(whole)))
-
-    def first(k: int) -> int:
-        while root[k] != k:
-            root[k] = root[root[k]]
-            k = root[k]
-        return k
-
     edges: dict[int, list[int]] = {}
     for k, face in enumerate(whole):
         for side in face.sides:
             # An edge at one u runs along v.
             edges.setdefault(side.edge, []).append(2 * k + (border(side.trace)[:1] == "u"))
-    for sides in edges.values():
-        for one, other in pairwise(sides):
-            root[first(one)] = first(other)
-    counts = [0] * len(root)
+    pairs = (pair for sides in edges.values() for pair in pairwise(sides))
+    group = together(2 * len(whole), pairs)
+    counts = [0] * len(group)
     for k, face in enumerate(whole):
         for along in (0, 1):
-            at = first(2 * k + along)
+            at = group[2 * k + along]
             count = math.ceil(finer.get(face.name, 1.0) * _count(face.surface, along))
             counts[at] = max(counts[at], min(count, _MOST))
     return {
-        face.name: (counts[first(2 * k)], counts[first(2 * k + 1)]) for k, face in enumerate(whole)
+        face.name: (counts[group[2 * k]], counts[group[2 * k + 1]]) for k, face in enumerate(whole)
     }
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
@@ -20,6 +21,7 @@ __all__ = [
     "border",
     "is_whole",
     "part_seams",
+    "together",
 ]
 
 
@@ -150,6 +152,29 @@ def border(trace: Nurbs) -> str:
             if np.abs(trace.points[:, k] - end).max() < 1e-9:
                 return f"{letter}{end}"
     return ""
+
+
+def together(count: int, pairs: Iterable[tuple[int, int]]) -> list[int]:
+    """The group of each of some things, by the number of one of its members.
+
+    Parameters
+    ----------
+    count
+        How many things there are.
+    pairs
+        Two that are of one group.
+    """
+    root = list(range(count))
+
+    def first(k: int) -> int:
+        while root[k] != k:
+            root[k] = root[root[k]]
+            k = root[k]
+        return k
+
+    for one, other in pairs:
+        root[first(one)] = first(other)
+    return [first(k) for k in range(count)]
 
 
 _CLOSED = 1e-9

@@ -15,7 +15,7 @@ from moldloft.arguments import explain
 from moldloft.budget import within_limits
 from moldloft.cad.apart import read
 from moldloft.cad.divisions import cone_volume, divisions
-from moldloft.cad.faces import Imported, ImportedFace, align
+from moldloft.cad.faces import Imported, ImportedFace, align, together
 from moldloft.cad.joining import joins
 from moldloft.cad.placing import components, control, placing_of
 from moldloft.colours import MODEL
@@ -294,20 +294,11 @@ def _open(found: Imported, model: Model) -> list[str]:
 def _bodies(found: Imported) -> list[list[ImportedFace]]:
     """The faces that hang together along edges."""
     of_edge: dict[int, int] = {}
-    root = list(range(len(found.faces)))
-
-    def first(k: int) -> int:
-        while root[k] != k:
-            root[k] = root[root[k]]
-            k = root[k]
-        return k
-
-    for k, face in enumerate(found.faces):
-        for side in face.sides:
-            root[first(k)] = first(of_edge.setdefault(side.edge, k))
+    sides = ((k, side.edge) for k, face in enumerate(found.faces) for side in face.sides)
+    group = together(len(found.faces), ((of_edge.setdefault(edge, k), k) for k, edge in sides))
     bodies: dict[int, list[ImportedFace]] = {}
     for k, face in enumerate(found.faces):
-        bodies.setdefault(first(k), []).append(face)
+        bodies.setdefault(group[k], []).append(face)
     return list(bodies.values())
 
 
