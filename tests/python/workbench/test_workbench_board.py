@@ -104,7 +104,7 @@ def test_a_dam_from_nothing(board: Callable[..., BoardHand]) -> None:
 
 
 SITE = """load "dam.skt";
-load "shed.skt";
+load "lock_wall.skt";
 AbsPoint gate(dam.p4.x, 0, dam.p4.z);
 print dam.volume;
 """
@@ -113,11 +113,12 @@ print dam.volume;
 def test_sketches_of_a_model_are_drawn_beside_it(
     board: Callable[..., BoardHand], tmp_path: Path
 ) -> None:
-    for name in ("dam.skt", "shed.skt"):
+    for name in ("dam.skt", "lock_wall.skt"):
         shutil.copy(ROOT / "examples/sketch" / name, tmp_path)
-    dam, shed = tmp_path / "dam.skt", tmp_path / "shed.skt"
+    dam, wall = tmp_path / "dam.skt", tmp_path / "lock_wall.skt"
     before = dam.read_text(encoding="utf-8")
     b = board(SITE, "site.sdl")
+    assert not b.page.locator(".message.error").count()
 
     def text(path: Path) -> str:
         return str(b.page.evaluate("(f) => window.moldloft.text(f)", str(path)))
@@ -134,8 +135,8 @@ def test_sketches_of_a_model_are_drawn_beside_it(
     wider = 169_200 + 4 * 90 * 50
     b.until(lambda: [float(x) for x in b.hand("model.printed")] == [pytest.approx(wider)])
     # The board shows the sketch whose tab is chosen, and the history is one over all of them.
-    b.page.get_by_role("tab", name="shed.skt").click()
-    b.until(lambda: b.settle()["drawn"]["object"] == "SHED")
+    b.page.get_by_role("tab", name="lock_wall.skt").click()
+    b.until(lambda: b.settle()["drawn"]["object"] == "WALL")
     b.key("Control+z")
     b.until(lambda: b.param("dam.CREST") == 16)
     b.until(lambda: b.settle()["drawn"]["object"] == "DAM")
@@ -145,7 +146,7 @@ def test_sketches_of_a_model_are_drawn_beside_it(
     b.settle()
     b.key("Control+s")
     b.until(lambda: dam.read_text(encoding="utf-8") == after)
-    assert shed.read_text(encoding="utf-8") == text(shed)
+    assert wall.read_text(encoding="utf-8") == text(wall)
     assert not b.faults
 
 
