@@ -8,17 +8,17 @@ belongs to two faces.
 from __future__ import annotations
 
 import os
-from collections import Counter
 from collections.abc import Callable
 
 import numpy as np
 import pytest
 
 import moldloft
+from mesh_edges import edge_uses
 
 SOAK = bool(os.environ.get("MOLDLOFT_SOAK"))
 CASES = 200 if SOAK else 12
-SETTINGS = 40 if SOAK else 3
+SETTINGS = 400 if SOAK else 3
 
 Distance = Callable[[moldloft.Model, np.ndarray], np.ndarray]
 Kind = Callable[[np.random.Generator], tuple[list[str], str, Distance]]
@@ -253,13 +253,8 @@ def test_parts_meet_along_their_intersection(seed: int) -> None:
         mesh = model.mesh()
         off = np.maximum(abs(distance(model, mesh.vertices)), abs(cone(model, mesh.vertices)))
         on_both = off < 1e-9
-        edges = Counter(
-            frozenset((int(a), int(b)))
-            for face in mesh.faces
-            for a, b in zip(face, np.roll(face, -1), strict=True)
-            if a != b
-        )
-        seam = [uses for edge, uses in edges.items() if all(on_both[v] for v in edge)]
+        edges, uses = edge_uses(mesh.faces)
+        seam = uses[on_both[edges].all(axis=1)]
         assert len(seam) >= 8, text
         assert set(seam) == {2}, f"open along the intersection\n{text}"
         ring = mesh.vertices[on_both]

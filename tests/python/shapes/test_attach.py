@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import os
-from collections import Counter
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 import moldloft
+from mesh_edges import edge_uses
 from test_assemblies import KINDS, bulb_on_chine_hull, cone
 
 SOAK = bool(os.environ.get("MOLDLOFT_SOAK"))
@@ -45,15 +45,6 @@ def side_of_seam(text: str) -> int:
     return risen.index(sum(risen) < 2) + 1
 
 
-def edges(faces: np.ndarray) -> Counter[frozenset[int]]:
-    return Counter(
-        frozenset((int(a), int(b)))
-        for face in faces
-        for a, b in zip(face, np.roll(face, -1), strict=True)
-        if a != b
-    )
-
-
 def corners(mesh: moldloft.Mesh) -> np.ndarray:
     """The corners of each face by number: which side of an open skin is out may change."""
     return np.sort(mesh.faces, axis=1)
@@ -76,9 +67,9 @@ def test_patches_by_attach_are_the_surface_with_its_hole(seed: int) -> None:
         assert shaft == pytest.approx(model.eval("shaft.area"), rel=1e-8), text
         mesh = model.mesh()
         on_shaft = abs(cone(model, mesh.vertices)) < 1e-9
-        uses = edges(mesh.faces)
-        ring = [n for edge, n in uses.items() if all(on_shaft[v] for v in edge)]
-        assert max(uses.values()) == 2 and Counter(ring)[1] == 8 * count, text
+        edges, uses = edge_uses(mesh.faces)
+        ring = uses[on_shaft[edges].all(axis=1)]
+        assert uses.max() == 2 and np.count_nonzero(ring == 1) == 8 * count, text
         # The rim of the shaft's end alone is open there; elsewhere the edges of the whole surface.
         numbered = corners(mesh) if numbered is None else numbered
         if KINDS[seed % len(KINDS)] is bulb_on_chine_hull:

@@ -7,12 +7,12 @@ belongs to two faces, which traverse it in opposite directions.
 from __future__ import annotations
 
 import os
-from collections import Counter
 
 import numpy as np
 import pytest
 
 import moldloft
+from mesh_edges import edge_uses
 
 CASES = 400 if os.environ.get("MOLDLOFT_SOAK") else 12
 
@@ -62,14 +62,9 @@ def test_plates_meet_along_the_edge(seed: int) -> None:
         mesh = model.mesh()
         # An open sheet may turn its other side out.
         assert np.array_equal(np.sort(mesh.faces), np.sort(faces)), "the numbering stays"
-        edges = Counter(
-            frozenset((int(a), int(b)))
-            for face in mesh.faces
-            for a, b in zip(face, np.roll(face, -1), strict=True)
-            if a != b
-        )
-        assert max(edges.values()) == 2
-        shared = {v for edge, uses in edges.items() if uses == 2 for v in edge}
+        edges, uses = edge_uses(mesh.faces)
+        assert uses.max() == 2
+        shared = set(edges[uses == 2].ravel())
         foot, head = (np.array([model[n].x, model[n].y, model[n].z]) for n in "FH")
         along = (mesh.vertices - foot) @ (head - foot) / ((head - foot) @ (head - foot))
         off = np.linalg.norm(mesh.vertices - foot - along[:, None] * (head - foot), axis=1)
