@@ -3286,6 +3286,63 @@ def Intersection(
         AbsPoint A(0, 0, 0); AbsPoint B(4, 0, 0); AbsPoint C(0, 3, 2); AbsPoint D(4, 3, 1); Line l(A, B); Line m(C, D); RuledSurf S(l, m, visible = 0); AbsPoint E(2, -1, -2); AbsPoint F(2, 4, -2); AbsPoint G(3, -1, 4); AbsPoint H(2, 4, 4); Line n(E, F); Line o(G, H); RuledSurf T(n, o, visible = 0); Intersection x(S, T); IntSnake a(S, x); IntSnake b(T, x); EdgeSnake hem(4, S); EdgeSnake rim(3, T); SubSurf half({hem, a}); SubSurf web({b, rim}); AbsBead p(x, 0.5); XPlane y(1); Intersection c(S, y);
     """
     ...
+def BodyIntersection(
+    name: str,
+    /,
+    faces1: Sequence[_Surface] | _Any,
+    faces2: Sequence[_Surface] | _Any,
+    near: _Point | None = ...,
+    relabel: _Relabel | None = ...,
+    *,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    spacing: str | _Number | Sequence[str | _Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> CurveHandle:
+    """The intersection of two bodies, each a list of surfaces side by side: one curve from face to face, the same on
+    both bodies. Its parameter is the fraction of its length, its joints are on the edges of the faces.
+
+    `IntSnake(face, x)` is the part of the intersection `x` on one of the faces; patches there share its vertices with those of the
+    other body. Where `x` returns to a face, a magnet on the face selects the nearest part. Of several curves, `near` selects the
+    nearest to a point, by default to the middle of the first face; the others are reported. The curve begins with the first
+    pair of faces in the order of the lists, in the direction n1 x n2 of their normals.
+
+    Faces of a body meet in common edges: pieces that end in one point, within the tolerance of the model, continue each
+    other. The curve is open where a body is.
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    faces1 : list of surface
+        The faces of one body.
+    faces2 : list of surface
+        The faces of the other.
+    near : point, optional
+        A point near the intended curve.
+    relabel : relabel, optional
+        Reparametrisation of t (surfaces: v).
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    curve
+
+    Notes
+    -----
+    In the language::
+
+        AbsPoint A(0, -2, -2); AbsPoint B(0, 2, -2); AbsPoint C(0, -2, 2); AbsPoint D(0, 2, 2); Line ab(A, B); Line cd(C, D); RuledSurf wall(ab, cd, visible = 0); AbsPoint P(-1, -1, -1); AbsPoint Q(-1, 1, -1); AbsPoint R(-1, 0, 1); AbsPoint S(2, -1, -1); AbsPoint T(2, 1, -1); AbsPoint U(2, 0, 1); Line p(P, S); Line q(Q, T); Line r(R, U); RuledSurf f1(p, q, visible = 0); RuledSurf f2(q, r, visible = 0); RuledSurf f3(r, p, visible = 0); BodyIntersection x({f1, f2, f3}, {wall}); IntSnake hole(wall, x); IntSnake rim(f1, x); TrimSurf plate(wall, {hole}, whole = 1); EdgeSnake far(2, f1); SubSurf tube({rim, far});
+    """
+    ...
 def LineSnake(
     name: str,
     /,

@@ -23,10 +23,15 @@ pub enum Named {
     Edge(Key, usize),
     /// The begin (0) or the end (1) of a curve object.
     End(Key, usize),
+    /// Joint k of a curve object, among those of [`crate::Curve::joints`].
+    Joint(Key, usize),
 }
 
 /// Objects have numbers below this; a part has its kind above them.
-const PART: u32 = 1 << 28;
+const PART: u32 = 1 << 24;
+
+/// The kind of the first joint; those of corners, edges and ends are below.
+const FIRST_JOINT: u32 = 11;
 
 impl Key {
     fn part(self, kind: u32) -> Option<Key> {
@@ -48,6 +53,12 @@ impl Key {
         self.part(9 + k as u32)
     }
 
+    /// The identity of joint `k` of this curve; `None` beyond the first 245.
+    pub fn joint(self, k: usize) -> Option<Key> {
+        let kind = FIRST_JOINT + u32::try_from(k).ok()?;
+        (kind <= u32::MAX / PART).then(|| self.part(kind))?
+    }
+
     /// The named element.
     pub fn named(self) -> Named {
         let of = Key(self.0 % PART);
@@ -55,7 +66,8 @@ impl Key {
             kind @ 1..=4 => Named::Corner(of, kind - 1),
             kind @ 5..=8 => Named::Edge(of, kind - 5),
             kind @ 9..=10 => Named::End(of, kind - 9),
-            _ => Named::Object(self),
+            0 => Named::Object(self),
+            kind => Named::Joint(of, kind - FIRST_JOINT as usize),
         }
     }
 }

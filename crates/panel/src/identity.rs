@@ -393,6 +393,7 @@ impl<'g> IdentityFinder<'g> {
                     let known = c.end_points()[k].filter(|&p| p != at);
                     known.or_else(|| c.image_of()?.end(k))
                 }),
+                Named::Joint(curve, k) => self.curve(curve).and_then(|c| c.image_of()?.joint(k)),
                 Named::Edge(..) => None,
             };
             let Some(next) = next.map(|p| self.found.point(p)) else { break };
@@ -434,7 +435,7 @@ impl<'g> IdentityFinder<'g> {
     fn make(&mut self, key: Key) -> Make {
         match key.named() {
             Named::Edge(surface, k) => self.line_make(Root::Edge(surface, k as u8)),
-            Named::Corner(..) | Named::End(..) => self.point_make(key),
+            Named::Corner(..) | Named::End(..) | Named::Joint(..) => self.point_make(key),
             Named::Object(_) => match self.graph.get(key).and_then(|o| o.value()) {
                 Some(Value::Curve(_)) => self.line_make(Root::Curve(key)),
                 Some(Value::Point(_)) => self.point_make(key),
@@ -558,6 +559,10 @@ impl<'g> IdentityFinder<'g> {
                 Some(self.surface(surface)?.jet(u, v, Order::Zero).p)
             }
             Named::End(curve, k) => Some(self.curve(curve)?.end(k as f64)),
+            Named::Joint(curve, k) => {
+                let curve = self.curve(curve)?;
+                Some(curve.end(*curve.joints().get(k)?))
+            }
             Named::Edge(..) => None,
         }
     }

@@ -717,6 +717,7 @@ pub(crate) fn words_for(graph: &Graph<f64>, key: Key) -> String {
             format!("edge {edge} of `{}`", name(key))
         }
         Named::End(key, k) => format!("the {} of `{}`", ["begin", "end"][k], name(key)),
+        Named::Joint(key, k) => format!("joint {} of `{}`", k + 1, name(key)),
     }
 }
 

@@ -135,6 +135,7 @@ pub fn rows() -> Vec<Row> {
         curve::MirrCurve,
         search::ProjCurve,
         search::Intersection,
+        search::BodyIntersection,
         snake::LineSnake,
         snake::BSnake,
         snake::EdgeSnake,

@@ -34,6 +34,7 @@ pub use line::{Line, Segment};
 pub use mirrored::MirrCurve;
 pub use nurbs::{NURBCurve, spline};
 pub use offset::OffsetCurve;
+pub(crate) use poly::CompositeCurve;
 pub use poly::{PolyCurve, PolySnake, shares};
 pub use relative::{CopyCurve, Moved, RelCurve, RotatCurve};
 pub use sub::{BSubCurve, BSubSnake, SubCurve, SubSnake};

@@ -96,7 +96,7 @@ fn chain<T: Real>(
             .in_field(pieces));
     }
     let trace = trace(&curves, &ends);
-    let shape = CompositeCurve { curves, ends, trace };
+    let shape = CompositeCurve { curves, ends, trace, closed: false };
     Ok(Value::Curve(match surface {
         Some(surface) => CurveRef::snake(shape, surface, context.nesting),
         None => CurveRef::new(shape, context.nesting),
@@ -210,10 +210,14 @@ fn trace<T: Real>(curves: &[CurveRef<T>], ends: &[T]) -> Trace<T> {
     Trace::Pieces(all)
 }
 
-struct CompositeCurve<T: Real> {
-    curves: Vec<CurveRef<T>>,
-    ends: Vec<T>,
-    trace: Trace<T>,
+/// Curves end to end, each up to its end parameter.
+pub(crate) struct CompositeCurve<T: Real> {
+    pub curves: Vec<CurveRef<T>>,
+    /// The parameters of the joints, 0 and 1 included.
+    pub ends: Vec<T>,
+    pub trace: Trace<T>,
+    /// True if it is closed by construction.
+    pub closed: bool,
 }
 
 impl<T: Real> CompositeCurve<T> {
@@ -271,6 +275,10 @@ impl<T: Real> Curve<T> for CompositeCurve<T> {
         self.with_joints(|curve| curve.joints())
     }
 
-    moldloft_num::curve_facts!(open, not_rational);
+    fn closed(&self) -> bool {
+        self.closed
+    }
+
+    moldloft_num::curve_facts!(not_rational);
     moldloft_num::curve_one_by_one!(T);
 }

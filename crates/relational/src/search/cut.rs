@@ -165,6 +165,8 @@ pub(super) struct Cut<T: Real> {
     pub total: T,
     pub size: f64,
     pub closed: bool,
+    /// The unknown that is 0 or 1 at each end on an edge of a surface.
+    pub on_edges: [Option<(usize, f64)>; 2],
 }
 
 /// The surface and the second shape of a cut.
@@ -411,7 +413,11 @@ impl<T: Real> Cut<T> {
         let pair = |q: [T; 4]| flat([q[2 * side], q[2 * side + 1]], T::one());
         let plain_jet = [pair(q.map(T::from)), Vec3::zero(), Vec3::zero()];
         let Some(all) = self.both.unknowns(&piece.guide, q, y) else { return plain_jet };
-        let all = piece.on_its_side(all);
+        let mut all = piece.on_its_side(all);
+        let end = [0.0, 1.0].iter().position(|end| t.re() == *end);
+        if let Some((k, value)) = end.and_then(|end| self.on_edges[end]) {
+            all[k] = T::from(value);
+        }
         let w = pair(all);
         if order == Order::Zero {
             return [w, Vec3::zero(), Vec3::zero()];

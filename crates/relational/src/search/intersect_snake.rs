@@ -14,7 +14,7 @@ use crate::arguments::Magnet;
 use moldloft_locate::implicit::{Implicit, refined, solve};
 use moldloft_locate::march::{Branch, BranchEnd, Crossing, Other, TracePoint, Unknowns};
 use moldloft_locate::{LocateReport, LocateStatus, PlainSurface};
-use moldloft_num::trace::{Key, Trace};
+use moldloft_num::trace::{Key, Mark, Root, Trace};
 use moldloft_num::{Jet, Order, Plane, Real, Surface, Vec3, slope_scale};
 use moldloft_registry::{
     Build, CallError, Context, CurveRef, FieldId, Kind, Point, SearchReport, SearchStatus,
@@ -131,8 +131,10 @@ impl<T: Real> Build<T> for IntSnake<T> {
         if let Target::Curve(along) = &target
             && !along.curve.snakes.is_empty()
         {
+            let many =
+                along.curve.snakes.iter().filter(|s| lies_on(s, &surface.surface)).count() > 1;
             let unused = [
-                (surface.start.is_some() || along.start.is_some(), Self::SURFACE),
+                (surface.start.is_some() && !many || along.start.is_some(), Self::SURFACE),
                 (start.is_some(), Self::START),
                 (end.is_some(), Self::END),
                 (point.is_some(), Self::POINT),
@@ -148,7 +150,7 @@ impl<T: Real> Build<T> for IntSnake<T> {
                 .help("give it to the intersection; `SubSnake` is a part of the snake")
                 .in_field(field));
             }
-            return on_surface(&along.curve, &surface.surface, Self::SURFACE, context);
+            return on_surface(&along.curve, &surface, Self::SURFACE, context);
         }
         let select = BranchSelection { ends: [start, end], point, number };
         let found = cut(&surface, target, select, Self::FIELDS, context)?;
@@ -157,28 +159,82 @@ impl<T: Real> Build<T> for IntSnake<T> {
     }
 }
 
-/// An intersection as a snake on one of its surfaces.
+/// True for a snake on the surface.
+fn lies_on<T: Real>(snake: &CurveRef<T>, surface: &SurfaceRef<T>) -> bool {
+    snake.surface.as_ref().is_some_and(|own| is_one(own, surface))
+}
+
+/// An intersection as a snake on one of its surfaces; a magnet selects one of several parts there.
 fn on_surface<T: Real>(
     whole: &CurveRef<T>,
-    surface: &SurfaceRef<T>,
+    onto: &Onto<T>,
     field: FieldId,
     context: &Context,
 ) -> Result<Value<T>, CallError> {
-    let is_it =
-        |snake: &&CurveRef<T>| snake.surface.as_ref().is_some_and(|own| is_one(own, surface));
-    let Some(snake) = whole.snakes.iter().find(is_it) else {
-        return Err(CallError::new("wrong-surface", "the intersection is not on this surface")
-            .expected("one of the surfaces of the intersection")
-            .found("another surface")
+    let surface = &onto.surface;
+    let parts: Vec<&CurveRef<T>> =
+        whole.snakes.iter().filter(|snake| lies_on(snake, surface)).collect();
+    let snake = match (parts.as_slice(), onto.from()) {
+        ([], _) => {
+            return Err(CallError::new("wrong-surface", "the intersection is not on this surface")
+                .expected("one of the surfaces of the intersection")
+                .found("another surface")
+                .related(whole.key, "is the intersection")
+                .related(surface.key, "is the surface")
+                .in_field(field));
+        }
+        ([one], _) => *one,
+        (many, None) => {
+            return Err(CallError::new(
+                "several-parts",
+                format!("the intersection has {} parts on this surface", many.len()),
+            )
+            .expected("a magnet on the surface near one of them")
+            .found("the surface")
             .related(whole.key, "is the intersection")
-            .related(surface.key, "is the surface")
             .in_field(field));
+        }
+        (many, Some(near)) => {
+            let away = |snake: &CurveRef<T>| distance_in_parameters(snake, near);
+            let nearest = many.iter().min_by(|a, b| away(a).total_cmp(&away(b)));
+            *nearest.expect("there are several")
+        }
     };
     let pieces = whole.pieces();
-    let trace = if pieces.is_empty() { Trace::own() } else { Trace::Pieces(pieces) };
+    let trace = match (&snake.part_of, whole.key) {
+        _ if pieces.is_empty() => Trace::own(),
+        (Some(part), Some(key)) => {
+            let joints = whole.joints();
+            let point = |t: T| match t.re() {
+                // A ring begins and ends in one point.
+                end if end.fract() == 0.0 && whole.closed() => key.end(0),
+                inside => {
+                    // Once round, rounding is that of 1.
+                    let is_it = |joint: &f64| (joint - inside.fract()).abs() <= f64::EPSILON;
+                    key.joint(joints.iter().position(is_it)?)
+                }
+            };
+            let [from, to] = part.1.map(|t| Mark { t, point: point(t) });
+            whole.trace().part(Root::Curve(key), from, to)
+        }
+        _ => Trace::Pieces(pieces),
+    };
     let nesting = context.nesting.max(whole.depth);
     let curve = AliasCurve { curve: snake.clone(), trace };
     Ok(Value::Curve(CurveRef::snake(curve, surface.clone(), nesting)))
+}
+
+/// Number of points of a snake that are compared with a magnet.
+const COMPARED_POINTS: usize = 33;
+
+/// The distance of a snake from a point in the parameter plane, approximately.
+fn distance_in_parameters<T: Real>(snake: &CurveRef<T>, [u, v]: [f64; 2]) -> f64 {
+    let places = (0..COMPARED_POINTS).map(|k| k as f64 / (COMPARED_POINTS - 1) as f64);
+    let away = |t: f64| {
+        let [w, ..] = snake.on_surface(T::from(t), Order::Zero)?;
+        Some((w - Vec3::of(u, v, 0.0)).re().norm())
+    };
+    places.filter_map(away).fold(f64::INFINITY, f64::min)
 }
 
 /// True for one surface: of one name, or the same shape without a name.
@@ -188,9 +244,9 @@ fn is_one<T: Real>(a: &SurfaceRef<T>, b: &SurfaceRef<T>) -> bool {
 
 /// The fields that an intersection may fail for, and the words for its ends.
 #[derive(Clone, Copy)]
-struct IntersectionFields {
-    target: FieldId,
-    ends: [(FieldId, &'static str); 2],
+pub(super) struct IntersectionFields {
+    pub target: FieldId,
+    pub ends: [(FieldId, &'static str); 2],
 }
 
 impl<T: Real> IntSnake<T> {
@@ -284,13 +340,9 @@ fn cut<T: Real>(
     };
     let keys = [start.as_ref().and_then(|m| m.key), end.as_ref().and_then(|m| m.key)];
     let mut request = CutRequest {
-        first: surface.surface.clone(),
-        second,
         starts: [surface.start, second_start],
-        ends: [None, None],
-        swapped: false,
         number,
-        fields,
+        ..CutRequest::of_pair(surface.surface.clone(), second, fields)
     };
     if let Some(number) = number.filter(|_| request.starts.iter().any(Option::is_some)) {
         return Err(number.twice());
@@ -310,9 +362,9 @@ fn cut<T: Real>(
 }
 
 /// Two shapes, and what selects a branch of their intersection and its ends.
-struct CutRequest<T: Real> {
-    first: SurfaceRef<T>,
-    second: Second<T>,
+pub(super) struct CutRequest<T: Real> {
+    pub first: SurfaceRef<T>,
+    pub second: Second<T>,
     /// The parameters of magnets near the branch, on each surface.
     starts: [Option<[T; 2]>; 2],
     ends: [Option<CutEnd<T>>; 2],
@@ -323,6 +375,19 @@ struct CutRequest<T: Real> {
 }
 
 impl<T: Real> CutRequest<T> {
+    /// Two shapes in the given order.
+    pub fn of_pair(first: SurfaceRef<T>, second: Second<T>, fields: IntersectionFields) -> Self {
+        Self {
+            first,
+            second,
+            starts: [None; 2],
+            ends: [None, None],
+            swapped: false,
+            number: None,
+            fields,
+        }
+    }
+
     /// The end `k` at a magnet on one of the surfaces.
     fn end(&self, magnet: Magnet<T>, k: usize) -> Result<CutEnd<T>, CallError> {
         let surfaces = [Some(&self.first), self.second.surface()];
@@ -530,7 +595,7 @@ fn traced<T: Real>(
 }
 
 /// The error of shapes that do not meet.
-fn apart(crossing: &Crossing<'_>, from: [f64; 2], second: &'static str) -> CallError {
+pub(super) fn apart(crossing: &Crossing<'_>, from: [f64; 2], second: &'static str) -> CallError {
     let x = crossing.first.jet(from[0], from[1], Order::Zero).p;
     let residual = match crossing.other {
         Other::Plane(plane) => plane.distance(x).abs(),
@@ -618,7 +683,7 @@ impl<T: Real> CutBegin<T> {
 }
 
 /// Cuts the branch to its ends, gives it its length as parameter, with derivatives.
-fn set_up<T: Real>(
+pub(super) fn set_up<T: Real>(
     request: &CutRequest<T>,
     crossing: &Crossing<'_>,
     mut branch: Branch,
@@ -706,7 +771,11 @@ fn set_up<T: Real>(
         piece.begin -= offsets[0];
     }
     let total = sum + offsets[1] - offsets[0];
-    Ok(Cut { both, pieces, total, size: crossing.size, closed: whole })
+    let on_edges = [0, 1].map(|k| match branch.ends[k] {
+        BranchEnd::Edge { unknown, value } if ends[k].is_none() => Some((unknown, value)),
+        _ => None,
+    });
+    Ok(Cut { both, pieces, total, size: crossing.size, closed: whole, on_edges })
 }
 
 /// Stations within this fraction of the distance to the next are moved onto a joint.

@@ -11,6 +11,7 @@ mod distances;
 mod equations;
 mod geodesic;
 mod int_point;
+mod intersect_bodies;
 mod intersect_snake;
 mod magnets;
 mod on_surface;
@@ -25,6 +26,7 @@ pub use beads::{IntBead, IntRing, ProjBead, ProjRing, ProxBead, ProxRing, XYZBea
 pub use distances::{distance_from_curve, distance_from_surface, separation};
 pub use geodesic::GeoSnake;
 pub use int_point::IntPoint;
+pub use intersect_bodies::BodyIntersection;
 pub use intersect_snake::{IntSnake, Intersection};
 pub use magnets::{IntMagnet, ProjMagnet, ProxMagnet, TanMagnet, XYZMagnet};
 pub use points::ProjPoint;

@@ -381,6 +381,10 @@ fn place(scene: &Scene<f64>, key: Key) -> Vec3 {
             Value::Curve(c) => c.end(k as f64),
             other => panic!("an end of {other:?}"),
         },
+        Named::Joint(curve, k) => match value(curve) {
+            Value::Curve(c) => c.end(c.joints()[k]),
+            other => panic!("a joint of {other:?}"),
+        },
         _ => match value(key) {
             Value::Point(p) => p.xyz,
             other => panic!("the point is {other:?}"),
