@@ -39,6 +39,7 @@ if TYPE_CHECKING:
     from moldloft.loading import load, loads
     from moldloft.models import Model, Param
     from moldloft.shapes.blocks import Block, Blocks
+    from moldloft.shapes.measures import SurfaceMeasures
     from moldloft.shapes.mesh import Mesh, Patch
     from moldloft.shapes.nurbs import Nurbs
     from moldloft.shapes.objects import (
@@ -104,6 +105,7 @@ __all__ = [
     "Snake",
     "Solid",
     "Surface",
+    "SurfaceMeasures",
     "UnknownNameError",
     "__version__",
     "fair",
@@ -144,6 +146,7 @@ _HOMES = {
     "model": "moldloft.builder",
     "param": "moldloft.builder",
     "Nurbs": "moldloft.shapes.nurbs",
+    "SurfaceMeasures": "moldloft.shapes.measures",
     "Bead": "moldloft.shapes.objects",
     "Body": "moldloft.shapes.objects",
     "Contours": "moldloft.shapes.objects",

@@ -49,6 +49,7 @@ pub use measures::floating::{FloatAnswer, FloatRequest, FlotationOptions, Immers
 #[cfg(not(target_family = "wasm"))]
 pub use measures::gradients::{GradientMode, Gradients, WeightedOutput};
 pub use measures::hydrostatics::{HydrostaticsOptions as FloatOptions, WettedPatch};
+pub use measures::parts::PartMeasures;
 pub use measures::surface_fields::PatchAnalysis;
 pub use moldloft_hydro::Attitude;
 pub use moldloft_lang::run::program::ArgumentInText;

@@ -79,6 +79,16 @@ pub fn surface_measures<T: Real>(
     surface: &dyn Surface<T>,
     accuracy: f64,
 ) -> Option<BodyMeasures<T>> {
+    part_measures(surface, None, accuracy)
+}
+
+/// Area, volume and centres of a surface, or of its part within loops; `None` if a point is not finite, or loops bound
+/// no part.
+pub fn part_measures<T: Real>(
+    surface: &dyn Surface<T>,
+    loops: Option<&TrimLoops<'_, T>>,
+    accuracy: f64,
+) -> Option<BodyMeasures<T>> {
     let steps: Vec<f64> = (0..=6).map(|k| f64::from(k) / 6.0).collect();
     let mut points = vec![Vec3::zero(); steps.len() * steps.len()];
     surface.grid(&steps, &steps, &mut points, None);
@@ -86,7 +96,7 @@ pub fn surface_measures<T: Real>(
         return None;
     }
     let size = Box3::around(points.iter().map(|p| p.re())).diagonal();
-    let side = HullSide { surface, reversed: false, open_edges: [false; 4], loops: None };
+    let side = HullSide { surface, reversed: false, open_edges: [false; 4], loops };
     Some(Body::new(&[side], [], Vec::new(), size, accuracy)?.measures())
 }
 

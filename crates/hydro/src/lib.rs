@@ -28,7 +28,7 @@ mod section;
 mod strip;
 mod trimmed;
 
-pub use body::{Body, BodyMeasures, HullSide, USUAL_ACCURACY, surface_measures};
+pub use body::{Body, BodyMeasures, HullSide, USUAL_ACCURACY, part_measures, surface_measures};
 pub use cell::PolynomialCell;
 pub use equilibrium::{Equilibrium, FloatError, Loading, Status, equilibrium};
 pub use figures::hydrostatics;

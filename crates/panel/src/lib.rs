@@ -45,5 +45,5 @@ pub use notes::{ChainStep, PanelNote};
 pub use outlines::{FaceOutline, OutlineCurve, OutlineSide};
 pub use panelling::{MOST_PANELS, Panelling};
 pub use shared_edges::{EdgeStretch, PatchEdge};
-pub use skin::Skin;
+pub use skin::{Skin, object_measures};
 pub use topology::Nominal;

@@ -3,7 +3,8 @@
 
 use crate::panelling::Panelling;
 use moldloft_hydro::{
-    Body, HullSide, PulledBody, Symmetry, TrimCurve, bounds_part, pull_hydrostatics,
+    Body, BodyMeasures, HullSide, PulledBody, Symmetry, TrimCurve, bounds_part, part_measures,
+    pull_hydrostatics,
 };
 use moldloft_mesh::{Closes, EdgeName, Mesh, OpenEdge, closure};
 use moldloft_model::Graph;
@@ -285,6 +286,20 @@ fn shape<T: Scalar>(graph: &Graph<T>, name: &str, trimmed: bool) -> Option<SideS
         Value::Surface(surface) if !trimmed => Some(SideShape::Whole(surface.clone())),
         Value::Body(facets) if trimmed => facets.border.clone().map(SideShape::Trimmed),
         _ => None,
+    }
+}
+
+/// The measures of a surface object, or of a part of a surface within loops; `None` for other objects, and if it has no measures.
+pub fn object_measures<T: Scalar>(
+    graph: &Graph<T>,
+    name: &str,
+    accuracy: f64,
+) -> Option<BodyMeasures<T>> {
+    match shape(graph, name, false).or_else(|| shape(graph, name, true))? {
+        SideShape::Whole(surface) => part_measures(&*surface, None, accuracy),
+        SideShape::Trimmed(border) => {
+            part_measures(&**border.0.surface(), Some(&loops(&border)), accuracy)
+        }
     }
 }
 

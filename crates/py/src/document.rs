@@ -682,6 +682,20 @@ impl PyDocument {
         Ok(derivatives(py, &columns))
     }
 
+    /// Area and centroid of a surface with bounds, derivatives and their bounds, as rows of four.
+    fn part_measures(
+        &self,
+        py: Python<'_>,
+        name: String,
+        accuracy: f64,
+        by: Vec<String>,
+    ) -> PyResult<([[f64; 4]; 2], [[Vec<f64>; 4]; 2])> {
+        in_accuracy(accuracy)?;
+        object_named(&self.lock(py), &name)?;
+        let found = self.long_checked(py, move |d| d.part_measures(&name, accuracy, &by))?;
+        Ok(([found.figures, found.bounds], [found.derivatives, found.derivative_bounds]))
+    }
+
     /// Hydrostatics: rows of the given quantity (`level`, `draft`, `displacement`), its value,
     /// trim, heel, and whether trim and heel are free; a dictionary for each.
     #[allow(clippy::too_many_arguments)]
@@ -699,11 +713,7 @@ impl PyDocument {
         of_weights: bool,
         flooded: bool,
     ) -> PyResult<Vec<Bound<'py, PyDict>>> {
-        if !(1e-12..=0.1).contains(&accuracy) {
-            return Err(plain_error(format!(
-                "the accuracy is relative, from 1e-12 to 0.1, not {accuracy}"
-            )));
-        }
+        in_accuracy(accuracy)?;
         let one_side = match sides {
             "both" => false,
             "one" => true,
@@ -915,6 +925,13 @@ pub fn format_text(name: &str, text: &[u8]) -> PyResult<String> {
     };
     sources.add(name, &*text);
     moldloft::syntax::sdl::format(&text).map_err(|diagnostics| model_error(&diagnostics, &sources))
+}
+
+fn in_accuracy(accuracy: f64) -> PyResult<()> {
+    if (1e-12..=0.1).contains(&accuracy) {
+        return Ok(());
+    }
+    Err(plain_error(format!("the accuracy is relative, from 1e-12 to 0.1, not {accuracy}")))
 }
 
 fn object_named<'d>(document: &'d Document, name: &str) -> PyResult<&'d Object<f64>> {

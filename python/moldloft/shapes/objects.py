@@ -11,8 +11,11 @@ from moldloft import _core
 from moldloft.arguments import explain
 from moldloft.errors import Error, ModelError, UnknownNameError
 from moldloft.shapes.calculus import CurveCalculus, SurfaceCalculus, broadcast, parameter
+from moldloft.shapes.measures import SurfaceMeasures
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from numpy.typing import ArrayLike, NDArray
 
     from moldloft._core import Document
@@ -404,6 +407,48 @@ class _Located(Object):
         return Nurbs._of(_core.nurbs(self._document, self.name, accuracy, degree))
 
 
+class _Measured(Object):
+    """What surfaces and parts of surfaces share."""
+
+    def measures(self, *, accuracy: float = 1e-6, by: Sequence[str] = ()) -> SurfaceMeasures:
+        """Area and centroid of the surface with bounds of their errors.
+
+        Parameters
+        ----------
+        accuracy
+            The requested relative error, 1e-12 to 0.1.
+        by
+            Parameters or literals for derivatives, which have bounds, too.
+
+        Returns
+        -------
+        SurfaceMeasures
+            The figures, in the unit of the model.
+
+        Raises
+        ------
+        ModelError
+            If the object is no surface and no part of one, or a name is unknown.
+
+        Examples
+        --------
+        >>> import moldloft
+        >>> m = moldloft.loads('''
+        ... param float r = 2; XPlane side(0); AbsPoint A(0, 0, 0); AbsPoint B(0, 0, 1);
+        ... AbsPoint C(r, 0, 0); AbsPoint D(r, 0, 1); Line axis(A, B); Line rule(C, D);
+        ... RevSurf tube(rule, axis, 0, 2*PI);
+        ... ''')
+        >>> found = m["tube"].measures(by=["r"])
+        >>> round(found.area, 6), round(found.derivatives["area"]["r"], 6)
+        (12.566371, 6.283185)
+        >>> found.bounds["area"] < 1e-5 and found.derivative_bounds["area"]["r"] < 1e-5
+        True
+        """
+        names = list(by)
+        values, slopes = self._document.part_measures(self.name, accuracy, names)
+        return SurfaceMeasures._of(values, slopes, names)
+
+
 class Curve(CurveCalculus, _Located):
     """A curve; calling it gives its points."""
 
@@ -437,7 +482,7 @@ class Snake(Curve):
     """A curve on a surface."""
 
 
-class Surface(SurfaceCalculus, _Located):
+class Surface(SurfaceCalculus, _Located, _Measured):
     """A surface; calling it gives its points."""
 
     area: float
@@ -602,8 +647,8 @@ class Solid(Object):
         return Nurbs._of(_core.nurbs(self._document, self.name, accuracy, degree))
 
 
-class Body(Object):
-    """A body of triangles."""
+class Body(_Measured):
+    """A body of triangles, or the part of a surface within loops."""
 
     volume: float
     area: float

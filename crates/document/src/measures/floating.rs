@@ -68,7 +68,7 @@ pub struct FlotationOptions {
 }
 
 /// Accuracy of the cells that bound the errors of derivatives, relative to that of the figures.
-const COARSER: f64 = 100.0;
+pub(super) const COARSER: f64 = 100.0;
 
 /// One answer: figures by name, and the state of the solution.
 #[derive(Clone, Debug, PartialEq)]

@@ -8,6 +8,7 @@ pub(crate) mod floating;
 #[cfg(not(target_family = "wasm"))]
 pub(crate) mod gradients;
 pub(crate) mod hydrostatics;
+pub(crate) mod parts;
 #[cfg(not(target_family = "wasm"))]
 mod pulled;
 pub(crate) mod surface_fields;
