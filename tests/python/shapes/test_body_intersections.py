@@ -237,3 +237,46 @@ def test_of_several_parts_on_a_face_a_magnet_selects_one() -> None:
     )
     assert abs(model["s"](0.5)[1]) == pytest.approx(1.25)
     assert model["s"](0.5)[1] == pytest.approx(-model["t"](0.5)[1])
+
+
+@pytest.mark.parametrize("seed", range(400 if SOAK else 12))
+def test_round_bodies_in_parts_meet_in_the_whole_curve(seed: int) -> None:
+    """A cylinder in strips through a ball in gores, pieces of any length, beside quadrature."""
+    rng = np.random.default_rng(seed)
+    axes = frame(rng)
+    r, off = rng.uniform(0.2, 0.6), rng.uniform(0, 0.35)
+
+    def at(*place: float) -> str:
+        return "{" + ", ".join(repr(float(x)) for x in np.array(place) @ axes) + "}"
+
+    def turned(name: str, of: str, count: int) -> str:
+        cuts = np.cumsum(rng.uniform(0.05, 1, count + 1))
+        cuts = cuts[0] + (cuts - cuts[0]) / (cuts[-1] - cuts[0]) * 2 * np.pi
+        return "".join(
+            f"RevSurf {name}{k}({of}, {float(cuts[k])!r}, {float(cuts[k + 1])!r}, visible = 0);\n"
+            for k in range(count)
+        )
+
+    strips, gores = int(rng.integers(2, 5)), int(rng.integers(2, 4))
+    top = np.sqrt(1 - (off + r * np.cos(1)) ** 2 - (r * np.sin(1)) ** 2)
+    near = at(off + r * np.cos(1), r * np.sin(1), top)
+    lists = [
+        ", ".join(f"{name}{k}" for k in rng.permutation(count))
+        for name, count in (("c", strips), ("s", gores))
+    ]
+    text = (
+        f"Line ax({at(off, 0, -2)}, {at(off, 0, 2)});\n"
+        f"Line rule({at(off + r, 0, -2)}, {at(off + r, 0, 2)});\n"
+        f"Line poles({at(0, -1, 0)}, {at(0, 1, 0)});\n"
+        f"Arc meridian({at(0, -1, 0)}, {at(0, 0, 1)}, {at(0, 1, 0)});\n"
+        + turned("c", "rule, ax", strips)
+        + turned("s", "meridian, poles", gores)
+        + f"BodyIntersection x({{{lists[0]}}}, {{{lists[1]}}}, near = {near});\n"
+    )
+    turns, weights = np.polynomial.legendre.leggauss(400)
+    t = np.pi * (turns + 1)
+    x, y = off + r * np.cos(t), r * np.sin(t)
+    rise = off * r * np.sin(t) / np.sqrt(1 - x**2 - y**2)
+    curve = moldloft.loads(text)["x"]
+    assert curve.length == pytest.approx(np.pi * weights @ np.hypot(r, rise), rel=1e-9), text
+    np.testing.assert_allclose(curve(0.0), curve(1.0), atol=1e-11)

@@ -3,10 +3,10 @@
 use super::cut::{CutView, Second};
 use super::intersect_snake::{CutRequest, IntersectionFields, apart, set_up};
 use crate::curve::CompositeCurve;
-use moldloft_locate::PlainSurface;
-use moldloft_locate::march::{Branch, Crossing};
+use moldloft_locate::march::{Branch, BranchEnd, Crossing, Other};
+use moldloft_locate::{PlainSurface, nearest_on_surface};
 use moldloft_num::trace::Trace;
-use moldloft_num::{Order, Real, Vec3};
+use moldloft_num::{Order, Real, Surface, Vec3};
 use moldloft_registry::{
     Build, CallError, Context, CurveRef, Kind, Point, SearchReport, SearchStatus, SurfaceRef, Value,
 };
@@ -54,7 +54,9 @@ impl<T: Real> BodyIntersection<T> {
 impl<T: Real> Build<T> for BodyIntersection<T> {
     fn build(self, context: &Context) -> Result<Value<T>, CallError> {
         let bodies = [self.faces1, self.faces2];
-        let segments = segments(&bodies, Self::FIELDS)?;
+        let mut segments = segments(&bodies, Self::FIELDS)?;
+        continued(&bodies, &mut segments, context.tolerance)
+            .map_err(|fault| fault.in_field(Self::FACES2))?;
         let chains =
             chains(&segments, context.tolerance).map_err(|fault| fault.in_field(Self::FACES2))?;
         let middle = || bodies[0][0].jet(T::from(0.5), T::from(0.5), Order::Zero).p.re();
@@ -101,7 +103,7 @@ fn crossing<'a, T: Real>(
     second: &'a super::cut::PlainSecond<'a, T>,
 ) -> Crossing<'a> {
     match second.other() {
-        moldloft_locate::march::Other::Surface(surface) => Crossing::with_surface(first, surface),
+        Other::Surface(surface) => Crossing::with_surface(first, surface),
         _ => unreachable!("faces are surfaces"),
     }
 }
@@ -136,6 +138,79 @@ fn segments<T: Real>(
         }
     }
     Ok(segments)
+}
+
+/// Adds the segments, shorter than those that a search claims to find, that continue others across an edge of a face.
+fn continued<T: Real>(
+    bodies: &[Vec<SurfaceRef<T>>; 2],
+    segments: &mut Vec<Segment>,
+    tolerance: f64,
+) -> Result<(), CallError> {
+    let mut at = 0;
+    while at < segments.len() {
+        for k in [0, 1] {
+            let x = segments[at].end(k);
+            let BranchEnd::Edge { unknown, .. } = segments[at].branch.ends[k] else { continue };
+            let met = segments.iter().enumerate().any(|(n, s)| {
+                [0, 1].iter().any(|&j| (n, j) != (at, k) && s.end(j).distance(x) <= tolerance)
+            });
+            if met {
+                continue;
+            }
+            let side = unknown / 2;
+            let own = segments[at].faces;
+            let beside: Vec<Option<Segment>> = (0..bodies[side].len())
+                .filter(|number| *number != own[side])
+                .filter_map(|number| {
+                    let mut faces = own;
+                    faces[side] = number;
+                    through(bodies, faces, x, tolerance)
+                })
+                .collect();
+            // Without a face beyond the edge the body is open there.
+            let missing = !beside.is_empty();
+            match beside.into_iter().flatten().next() {
+                Some(segment) => segments.push(segment),
+                None if missing => {
+                    return Err(CallError::new(
+                        "search-unfinished",
+                        "the intersection ends at an edge between two faces",
+                    )
+                    .expected("faces that cross on both sides of the edge")
+                    .found(format!("an end at ({:.6}, {:.6}, {:.6})", x.x, x.y, x.z))
+                    .help("move one of the bodies until the edge crosses the other"));
+                }
+                None => {}
+            }
+        }
+        at += 1;
+    }
+    Ok(())
+}
+
+/// The intersection of two faces that ends at a point; `None` if a face is not there, and an inner `None` if there is no
+/// intersection.
+fn through<T: Real>(
+    bodies: &[Vec<SurfaceRef<T>>; 2],
+    faces: [usize; 2],
+    x: Vec3,
+    tolerance: f64,
+) -> Option<Option<Segment>> {
+    let first = PlainSurface(&*bodies[0][faces[0]]);
+    let second = Second::Surface(bodies[1][faces[1]].clone());
+    let plain = second.plain();
+    let crossing = crossing(&first, &plain);
+    let Other::Surface(other) = crossing.other else { return None };
+    let [[u, v], [p, r]] = [crossing.first, other].map(|s| nearest_on_surface(s, x, None).at);
+    let there =
+        |s: &dyn Surface<f64>, u: f64, v: f64| s.jet(u, v, Order::Zero).p.distance(x) <= tolerance;
+    if !there(crossing.first, u, v) || !there(other, p, r) {
+        return None;
+    }
+    let found = crossing.near([u, v], Some([p, r])).and_then(|q| crossing.branch(q));
+    let found = found.filter(|branch| branch.stations.len() > 1);
+    let found = found.map(|branch| Segment { faces, branch });
+    Some(found.filter(|s| [0, 1].iter().any(|&k| s.end(k).distance(x) <= tolerance)))
 }
 
 /// A segment in a chain, forwards or backwards.
