@@ -460,7 +460,7 @@ impl SketchSession {
         };
         let axis = args.axis();
         let value = args.value(object.units.as_deref())?;
-        let follows = args.len() > 0 || object.feature.is_some();
+        let follows = args.len() > 0 || object.feature.is_some() || object.on.is_some();
         let target = self.target(args, &object.name)?;
         args.end()?;
         let normal = self.section_axis(&object)?;
