@@ -168,7 +168,7 @@ export class BoardPointer {
     }
     if (e.button !== 0 || use === 'pan') press('pan')
     else if (board.marked(at)) press('none')
-    else if (handle && board.handles.begin(handle)) press('handle')
+    else if (handle && !this.on(at) && board.handles.begin(handle)) press('handle')
     else if (axis) press('axis', { axis, angles: [...board.drawn.angles] })
     else if (mark && !board.chaining) {
       press('none')
@@ -182,6 +182,12 @@ export class BoardPointer {
       press(key ? 'move' : this.solid.has(e) ? 'turn' : 'pan', { points: key ? board.held() : new Map() })
       board.paint()
     }
+  }
+
+  /** True on a point or a line of the drawing, which lies over the picture. */
+  private on(at: Place): boolean {
+    const hit = this.painter.hit(at, this.board.drawn, REACH)
+    return !!(hit.point || hit.line)
   }
 
   /** A pen ends what fingers have begun. */

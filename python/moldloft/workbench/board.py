@@ -369,8 +369,8 @@ class Board:
                 u, v = (_number(x) for x in move["at"])
                 session.run_line(f"POINT {int(move['point'])} AT {u} {v}")
             out.update(self._object_facts(self._data()))
-            given = {m[0] for m in session.marks(name, None)}
             out["marks"] = [_mark(m) for m in session.marks(name, None)]
+            given = {m["name"] for m in out["marks"]}
             session.run_line("ACCEPT ALL")
             labels, places = session.points(name)
             guess = dict(zip(labels.tolist(), places.tolist(), strict=True))

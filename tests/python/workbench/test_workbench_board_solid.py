@@ -139,7 +139,7 @@ def replayed(b: BoardHand) -> None:
     again.run(sketch.text)
     assert again.objects == sketch.objects
     solid = b.look()["solid"]
-    if solid["volume"] is not None and solid["exact"]:
+    if solid["made"] and solid["exact"]:
         assert sketch.objects[shown["object"]]["volume"] == solid["volume"]
 
 
@@ -287,7 +287,7 @@ def test_a_face_disappears(board: Callable[..., BoardHand]) -> None:
     b.key("v")
     pull(b, "EXTRUDE1", -3)
     assert b.text() == text
-    assert "POCKET.END" in b.page.locator(".centre").inner_text()
+    assert "POCKET.END" in b.page.locator("output.status").inner_text()
     through = text.replace("EXTRUDE FACE1 -2", "EXTRUDE FACE1 -5")
     b.page.locator(".cm-content").click()
     b.page.keyboard.press("Control+A")

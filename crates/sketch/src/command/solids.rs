@@ -313,7 +313,7 @@ impl SketchSession {
                 out.draw().aligns.extend(aligned);
                 continue;
             }
-            let found = suggestions(&out, &view, &layout).into_iter().flatten();
+            let found = suggestions(&out, &view, &layout).flatten();
             // A picture's suggestion changes with each dimension; an exact drawing gives all at
             // once.
             let many = if out.drawing.exact { usize::MAX } else { 1 };
