@@ -568,6 +568,8 @@ export class Board {
       ? { do: 'run', command: dimensioned(this.drawn, mark, value) }
       : { do: 'value', name: mark.name, value }
     void this.act([change]).then((fine) => {
+      // Meanwhile it may have been closed.
+      if (this.box.mark !== mark) return
       if (!fine) return this.box.refuse()
       if (missing) {
         this.box.close()

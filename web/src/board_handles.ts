@@ -78,7 +78,12 @@ export class Handles {
       this.shape(arrow, one)
       kept.set(key, arrow)
     }
-    for (const [key, arrow] of this.arrows) if (!kept.has(key)) arrow.remove()
+    for (const [key, arrow] of this.arrows) {
+      if (kept.has(key)) continue
+      const focused = arrow === document.activeElement
+      arrow.remove()
+      if (focused) this.act.leave()
+    }
     for (const [key, arrow] of kept) if (!this.arrows.has(key)) this.element.append(arrow)
     this.arrows = kept
   }

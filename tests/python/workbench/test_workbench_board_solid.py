@@ -397,3 +397,13 @@ def test_a_missing_depth_is_pulled(board: Callable[..., BoardHand]) -> None:
     assert look["solid"]["exact"] and look["solid"]["volume"] > 0
     replayed(b)
     assert not b.faults, b.faults
+
+
+def test_the_tabs_are_one_row(board: Callable[..., BoardHand]) -> None:
+    b = board(BOX)
+    b.page.set_viewport_size({"width": 1280, "height": 800})
+    tabs = b.page.get_by_role("tablist", name="what is shown").get_by_role("tab")
+    boxes = [box for tab in tabs.all() if (box := tab.bounding_box())]
+    stage = b.page.locator(".tabs").bounding_box()
+    assert stage and len(boxes) >= 6 and len({box["y"] for box in boxes}) == 1
+    assert max(box["x"] + box["width"] for box in boxes) <= stage["x"] + stage["width"]

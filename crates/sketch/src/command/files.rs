@@ -72,7 +72,6 @@ impl SketchSession {
                 "SAVE object AS name.skt",
             ));
         }
-        let mut names = names;
         // A section on a face is written with the body.
         let mut k = 0;
         while let Some(object) = names.get(k).and_then(|n| self.object(n)) {
