@@ -10,6 +10,7 @@ use crate::feature::{FaceChoice, Feature, FeatureKind, FeatureOperand, SectionPl
 use crate::format::script::face_text;
 use crate::identifier::identifier;
 use crate::solid::face_place::FacePlane;
+use crate::solid::feature::NoBody;
 use crate::solid::place::Similarity;
 use crate::{CoordinateAxis, SketchObject, SketchSolid};
 use std::sync::Arc;
@@ -59,7 +60,8 @@ impl SketchSession {
         let base = self.operand(&on.body)?;
         let worked = self.worked(&base);
         let body = worked.body().map_err(|why| no_body(&base, why))?;
-        let plane = FacePlane::of(body, &on.face).map_err(|why| no_body(&base, &why))?;
+        let plane =
+            FacePlane::of(body, &on.face).map_err(|why| no_body(&base, &NoBody::Treatment(why)))?;
         Ok((body.clone(), plane))
     }
 

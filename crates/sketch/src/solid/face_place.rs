@@ -2,7 +2,6 @@
 
 use super::SketchSolid;
 use super::edges::{FaceForm, TreatmentFault};
-use super::feature::NoBody;
 use super::place::Similarity;
 use crate::CoordinateAxis;
 use crate::feature::FaceChoice;
@@ -17,17 +16,17 @@ pub(crate) struct FacePlane<T> {
     pub normal: Vec3<T>,
 }
 
-fn refused(text: String, next: &str) -> NoBody {
-    NoBody::Treatment(TreatmentFault::new(text, None, next))
+fn refused(text: String, next: &str) -> TreatmentFault {
+    TreatmentFault::new(text, None, next)
 }
 
 impl<T: Real> FacePlane<T> {
     /// The common plane of the chosen faces of a body.
-    pub fn of(base: &SketchSolid<T>, face: &FaceChoice) -> Result<Self, NoBody> {
+    pub fn of(base: &SketchSolid<T>, face: &FaceChoice) -> Result<Self, TreatmentFault> {
         let next = "name a plane face; LIST FACES names them";
         let size = base.vertices.iter().map(|v| v.at.re().norm()).fold(0.0, f64::max);
         let mut found: Option<FacePlane<T>> = None;
-        for f in base.chosen_faces(face).map_err(NoBody::Treatment)? {
+        for f in base.chosen_faces(face)? {
             let FaceForm::Plane { at, normal } = base.form(f) else {
                 return Err(refused(format!("face {face} is round"), next));
             };
@@ -70,7 +69,7 @@ impl<T: Real> FacePlane<T> {
         &self,
         face: &FaceChoice,
         along: Option<CoordinateAxis>,
-    ) -> Result<Similarity<T>, NoBody> {
+    ) -> Result<Similarity<T>, TreatmentFault> {
         let own = along.map(CoordinateAxis::index);
         if let Some(k) = self.square().filter(|k| own.is_none_or(|own| own == *k)) {
             let mut shift = [T::zero(); 3];

@@ -433,7 +433,8 @@ impl Feature {
                     }
                     extreme @ FaceChoice::Extreme { .. } => extreme.clone(),
                 };
-                Ok(vec![FacePlane::of(&base, &face)?.place(&face, *along)?])
+                let place = FacePlane::of(&base, &face).and_then(|p| p.place(&face, *along));
+                Ok(vec![place.map_err(NoBody::Treatment)?])
             }
             FeatureKind::Place(place) => Ok(vec![place.similarity(&|e| number(layout, e))?]),
             FeatureKind::Pattern { step, count } => {
