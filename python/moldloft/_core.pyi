@@ -483,6 +483,23 @@ class SketchSession:
     def mesh(
         self, name: str, tolerance: float | None = None
     ) -> tuple[NDArray[np.float64], NDArray[np.uint32]]: ...
+    def faces(
+        self, name: str
+    ) -> tuple[
+        NDArray[np.float64], NDArray[np.uint32], list[int], list[tuple[str, str] | None]
+    ]: ...
+    def section_place(
+        self, name: str
+    ) -> (
+        tuple[
+            tuple[str, str],
+            list[list[float]],
+            float,
+            tuple[NDArray[np.float64], NDArray[np.uint32]],
+            list[int],
+        ]
+        | None
+    ): ...
     def gradient(
         self, name: str, by: list[str]
     ) -> tuple[

@@ -3,11 +3,12 @@
 import './board.css'
 import { BoardBar } from './board_bar'
 import { BoardBox } from './board_box'
-import { dimensioned, duplicated, labels, named } from './board_edit'
+import { dimensioned, duplicated, fresh, labels, named, quoted } from './board_edit'
+import { Handles } from './board_handles'
 import { type Aim, type Check, type Drawn, letter, type Mark, Page, Painter, type Place } from './board_paint'
 import { BoardPointer, REACH } from './board_pointer'
 import { type Shape, shapes } from './board_shapes'
-import { BoardSolid, type SolidFacts } from './board_solid'
+import { BoardSolid, type PlaneFace, type SolidFacts } from './board_solid'
 import { Underlay } from './board_underlay'
 import { h, s } from './dom'
 import type { Editor } from './editor'
@@ -40,6 +41,7 @@ const NOTHING = {
   faces: 0,
   asked: null,
   section: null,
+  place: null,
 } as unknown as Drawn
 
 export class Board {
@@ -61,7 +63,17 @@ export class Board {
     axes: (angles) => void this.act([{ do: 'axes', axes: angles.join(' ') }]),
     drawn: () => this.drawn,
   })
-  private readonly solid = new BoardSolid((n) => void this.make(n))
+  private readonly solid = new BoardSolid(
+    (n) => void this.make(n),
+    () => this.drawHandles(),
+  )
+  readonly handles = new Handles(this.solid, {
+    drawn: () => this.drawn,
+    tried: (command) => this.trying.push(command),
+    done: (change) => void this.let(change),
+    say: (words) => this.say(words),
+    leave: () => this.focus(),
+  })
   /** What was chosen when the buttons were built. */
   private buttoned = ''
   private readonly bar = new BoardBar(this, () => this.underlay.controls())
@@ -100,7 +112,7 @@ export class Board {
   })
   private readonly trying = new Newest<string>(async (trial) => {
     const { solid } = await this.ask('board_solid', { trial })
-    if (this.box.mark) this.solid.show(this.drawn, solid)
+    if (this.box.mark || this.handles.holding) this.solid.show(this.drawn, solid)
   })
   private readonly resting = new Newest<void>(async () => {
     const { solid } = await this.ask('board_solid')
@@ -134,9 +146,9 @@ export class Board {
     const help = h(
       'p',
       { class: 'sr', id: 'board-help' },
-      'D draws, V selects. X Y Z H P F O set and lock a type. Tab goes to the next missing dimension. N and Shift+N go through points and lines. Delete removes, Ctrl+D duplicates. The command line takes every sketch command.',
+      'D draws, V selects. X Y Z H P F O set and lock a type. Tab goes to the next missing dimension. N and Shift+N go through points and lines, G and Shift+G through the handles of the solid, B and Shift+B through its plane faces; S sketches on the chosen face. Delete removes, Ctrl+D duplicates. The command line takes every sketch command.',
     )
-    this.svg.append(this.underlay.handles)
+    this.svg.append(this.underlay.handles, this.handles.element)
     this.element.append(
       this.bar.element,
       // The drawing lies over the picture of the solid: what is drawn there is seen, and is what is meant.
@@ -253,14 +265,9 @@ export class Board {
     this.object = drawn.object
     const lines = new Set(this.drawn.lines.map((l) => l[0]))
     this.checks = this.checks.filter((c) => c.about.lines.every((l) => lines.has(l)))
-    if (!this.fitted && this.drawn.points.length > 2) {
-      this.measurePage()
-      this.page.fit(
-        this.drawn.points.map((p) => [p[1], p[2]]),
-        this.solid.element.clientWidth,
-      )
-    }
-    this.fitted ||= this.drawn.points.length > 0
+    const whole = this.whole()
+    if (!this.fitted && whole.length > 2) this.fitPage(whole)
+    this.fitted ||= whole.length > 0
     this.bar.starting()
     this.paint()
     this.buttons()
@@ -312,18 +319,25 @@ export class Board {
   }
 
   fit(): void {
-    this.measurePage()
-    this.page.fit(
-      this.drawn.points.map((p) => [p[1], p[2]]),
-      this.solid.element.clientWidth,
-    )
+    this.fitPage(this.whole())
     this.paint()
+  }
+
+  /** All that the page has: points, and the border of the face below. */
+  private whole(): Place[] {
+    return [...this.drawn.points.map((p): Place => [p[1], p[2]]), ...(this.drawn.place?.border.flat() ?? [])]
+  }
+
+  private fitPage(places: Place[]): void {
+    this.measurePage()
+    this.page.fit(places, this.solid.element.clientWidth)
   }
 
   use(tool: 'draw' | 'select'): void {
     this.tool = tool
     this.endChain()
     this.svg.dataset.tool = tool
+    this.drawHandles()
     this.buttons()
     this.paint()
     this.focus()
@@ -480,7 +494,7 @@ export class Board {
       )
     this.lock = ''
     try {
-      if (commands.length) await this.carryOut([{ do: 'run', command: commands.join('; ') }])
+      if (commands.length) await this.carryOut([{ do: 'run', command: commands.join('; '), drawn: true }])
     } catch (error) {
       for (const c of made) c.point = undefined
       throw error
@@ -554,6 +568,8 @@ export class Board {
       ? { do: 'run', command: dimensioned(this.drawn, mark, value) }
       : { do: 'value', name: mark.name, value }
     void this.act([change]).then((fine) => {
+      // Meanwhile it may have been closed.
+      if (this.box.mark !== mark) return
       if (!fine) return this.box.refuse()
       if (missing) {
         this.box.close()
@@ -642,6 +658,53 @@ export class Board {
       this.say('The body is in the model, exact.')
   }
 
+  // The solid by hand.
+
+  private drawHandles(): void {
+    this.handles.draw(this.tool === 'select' ? (this.last?.handles ?? []) : [])
+  }
+
+  /** A handle was let go: its value is written, as one step, or given up. */
+  private async let(change: Facts | null): Promise<void> {
+    const fine = change && (await this.act([change]))
+    if (!fine) this.resting.push(undefined)
+  }
+
+  /** The face of the body that is chosen. */
+  get face(): PlaneFace | null {
+    return this.solid.face
+  }
+
+  pickFace(face: number): void {
+    this.solid.pick(face)
+    this.faceNamed()
+  }
+
+  private faceNamed(): void {
+    const { face } = this
+    this.say(face ? `face ${face.name}: S sketches on it` : 'no plane face is chosen')
+    this.buttons()
+  }
+
+  /** A section on the chosen face. */
+  async sketchOnFace(): Promise<void> {
+    const { face } = this
+    const { object } = this.drawn
+    if (!face || !object) return this.faceNamed()
+    const name = fresh(this.drawn, 'FACE')
+    const scale = 10 ** Math.round(Math.log10(200 / Math.max(1e-12, this.solid.size)))
+    const angles = { XY: '0 90 225', XZ: '0 45 90', YZ: '225 0 90' }[face.plane]
+    const command = [
+      `SKETCH ${name} 2D ${face.plane} ON ${quoted(object)} ${face.name}`,
+      ...(scale === 1 ? [] : [`AXES ${angles} SCALE${` ${scale}`.repeat(3)}`]),
+    ].join('\n')
+    if (!(await this.act([{ do: 'run', command, last: 'end' }]))) return
+    this.solid.pick(-1)
+    this.choose(name)
+    this.use('draw')
+    this.say(`${name} on face ${face.name} of ${object}: draw its outline; E raises it, K sinks it`)
+  }
+
   /** Asks for the number of a shape, and makes it. */
   askShape(shape: Shape): void {
     const mark: Mark = {
@@ -661,9 +724,15 @@ export class Board {
       [],
       (value) =>
         void this.act([{ do: 'run', command: shape.command(value), last: shape.last }]).then((fine) =>
-          fine ? (this.box.close(), this.fit(), this.focus()) : this.box.refuse(),
+          fine ? (this.box.close(), this.made(shape.shows?.(value)), this.focus()) : this.box.refuse(),
         ),
     )
+  }
+
+  /** What was made is shown: an object of its own, or the one that is drawn. */
+  private made(object?: string): void {
+    if (object) this.choose(object)
+    else this.fit()
   }
 
   // Keys.
@@ -718,7 +787,12 @@ export class Board {
     else if (key === 'c') this.confirmNext()
     else if (key === 't') void this.acceptProposed()
     else if (key === 'n') this.walk(e.shiftKey ? -1 : 1)
-    else if (shapes(this.drawn, this.chosen).some((one) => one.key === key))
+    else if (key === 'g') this.grasp(e.shiftKey ? -1 : 1)
+    else if (key === 's') void this.sketchOnFace()
+    else if (key === 'b') {
+      this.solid.walk(e.shiftKey ? -1 : 1)
+      this.faceNamed()
+    } else if (shapes(this.drawn, this.chosen).some((one) => one.key === key))
       this.askShape(shapes(this.drawn, this.chosen).find((one) => one.key === key)!)
     else if (key === '0') this.fit()
     else if (key === 'delete' || key === 'backspace') this.remove()
@@ -728,6 +802,13 @@ export class Board {
       else if (!this.drawn.next.length && !this.drawn.section && !this.drawn.faces && this.last?.exact) void this.make()
     } else if (e.key.length > 1) return
     done()
+  }
+
+  /** The next handle of the solid has the keys. */
+  private grasp(step: number): void {
+    if (this.tool !== 'select') this.use('select')
+    this.drawHandles()
+    this.handles.walk(step)
   }
 
   /** The next point or line, named for who does not see it. */
@@ -789,6 +870,8 @@ export class Board {
       size: [box.width, box.height],
       open: this.box.mark,
       chain: this.chain.length,
+      handles: this.handles.tips(),
+      face: this.face,
     }
   }
 

@@ -36,6 +36,8 @@ export type BarActs = Pick<
   | 'acceptProposed'
   | 'make'
   | 'askShape'
+  | 'face'
+  | 'sketchOnFace'
 >
 
 function button(words: string, key: string, run: () => void, more: Facts = {}): HTMLElement {
@@ -150,13 +152,16 @@ export class BoardBar {
       objects.length > 1 ? select('object', objects, d.object ?? '', (name) => board.choose(name)) : '',
       d.object && !d.section ? select('axes', axes, '', (x) => x && void board.act([{ do: 'axes', axes: x }])) : '',
       this.progress(),
+      board.face
+        ? button(`Sketch on face ${board.face.name}`, 'S', () => void board.sketchOnFace(), { class: 'primary' })
+        : '',
       confirm.length ? button(`${confirm.length} to confirm`, 'C', () => board.confirmNext()) : '',
       board.proposed.size
         ? button(`Accept ${board.proposed.size} proposed`, 'T', () => void board.acceptProposed())
         : '',
       h('span', { class: 'grow' }),
       ...this.underlay(),
-      ...(d.lines.length > 1 ? shapes(d, board.chosen) : []).map(shape),
+      ...(d.lines.length > 1 || d.faces ? shapes(d, board.chosen) : []).map(shape),
       trace,
       action,
       button('Fit', '0', () => board.fit()),

@@ -10,6 +10,17 @@ const PLAIN = /^[-+]?(\d+\.?\d*|\.\d+)(e[-+]?\d+)?\s*[a-z]*$/i
 export const labels = (chosen: Iterable<string>, kind: 'p' | 'l'): number[] =>
   [...chosen].filter((c) => c[0] === kind).map((c) => Number(c.slice(1)))
 
+/** The name of an object as commands have it. */
+export const quoted = (name: string): string => (/^[A-Za-z_]\w*$/.test(name) ? name : `"${name}"`)
+
+/** A name with a number that no object has. */
+export function fresh(drawn: Drawn, name: string): string {
+  const used = new Set(drawn.objects.map((o) => o.toUpperCase()))
+  let k = 1
+  while (used.has(`${name}${k}`.toUpperCase())) k++
+  return `${name}${k}`
+}
+
 const written = (x: number) => Number(x.toPrecision(12))
 
 /** The command for a missing dimension, under a name that is free. */
@@ -62,6 +73,7 @@ export function named(changes: Facts[]): string {
     type: () => `Type of line ${first.lines}: ${first.type}`,
     value: () => `${first.name} = ${first.value}`,
     axes: () => `Axes ${first.axes}`,
+    place: () => `Point ${first.point} at ${first.at.join(' ')}`,
   }
   const name = words[first.do]?.() ?? 'Edit'
   return `${name.length > 60 ? `${name.slice(0, 59)}…` : name}${more}`

@@ -26,6 +26,17 @@ export interface Drawn {
   /** The loops of the face about which the text asks, the outer one first. */
   asked: number[][] | null
   numbers: Record<string, number | null>
+  /** The face on which a section is drawn: its body, the images of the unit vectors and of the origin, and its border on the page. */
+  place: {
+    body: string
+    face: string
+    columns: [number, number, number][]
+    /** 1 if a positive extrusion is outside the body, else -1. */
+    outward: number
+    vertices: number[]
+    quads: number[]
+    border: [Place, Place][]
+  } | null
 }
 
 export interface Mark {
@@ -171,6 +182,7 @@ export class Painter {
             if (end && members.includes(end)) members.forEach((m) => lit.set(m, kind))
     }
     this.faces.replaceChildren(
+      ...(d.place?.border ?? []).map(([a, b]) => segment(page.to(a), page.to(b), { class: 'ground' })),
       ...state.outlines.flatMap((way) => {
         const corners = way.map((p) => this.places.get(p))
         return corners.every(Boolean)
@@ -290,7 +302,8 @@ export class Painter {
   private axes(d: Drawn): void {
     const origin: Place = [64, this.page.size[1] - 64]
     this.triad.replaceChildren(
-      ...Object.entries(d.axes ?? {}).flatMap(([name, [c, w]]) => {
+      ...Object.entries(d.axes ?? {}).flatMap(([name, unit]) => {
+        const [c, w] = unit.map((x) => x / (Math.hypot(...unit) || 1))
         const tip: Place = [origin[0] + 42 * c, origin[1] - 42 * w]
         return [
           segment(origin, tip, { class: `axis type-${name}` }),

@@ -12,7 +12,7 @@ const CLICK = 5
 /** Pixels: how far a stroke leaves the line between its ends to be more than that line. */
 const BOW = 8
 
-type Kind = 'draw' | 'move' | 'pan' | 'turn' | 'axis' | 'none'
+type Kind = 'draw' | 'move' | 'pan' | 'turn' | 'axis' | 'handle' | 'none'
 
 interface Press {
   id: number
@@ -52,6 +52,8 @@ export type PointerActs = Pick<
   | 'dropped'
   | 'turnAxis'
   | 'axes'
+  | 'handles'
+  | 'pickFace'
 >
 
 export class BoardPointer {
@@ -159,12 +161,14 @@ export class BoardPointer {
     }
     const mark = target.closest('[data-mark]')?.getAttribute('data-mark')
     const axis = target.closest('[data-axis]')?.getAttribute('data-axis')
+    const handle = target.closest('[data-handle]')?.getAttribute('data-handle')
     if (e.button === 2 && board.chaining) {
       press('none')
       return board.endChain()
     }
     if (e.button !== 0 || use === 'pan') press('pan')
     else if (board.marked(at)) press('none')
+    else if (handle && !this.on(at) && board.handles.begin(handle)) press('handle')
     else if (axis) press('axis', { axis, angles: [...board.drawn.angles] })
     else if (mark && !board.chaining) {
       press('none')
@@ -180,6 +184,12 @@ export class BoardPointer {
     }
   }
 
+  /** True on a point or a line of the drawing, which lies over the picture. */
+  private on(at: Place): boolean {
+    const hit = this.painter.hit(at, this.board.drawn, REACH)
+    return !!(hit.point || hit.line)
+  }
+
   /** A pen ends what fingers have begun. */
   private arrives(e: PointerEvent): void {
     if (this.contacts.arrives(e)) this.stop()
@@ -189,6 +199,7 @@ export class BoardPointer {
   private stop(): void {
     const { pressed } = this
     this.pressed = null
+    if (pressed?.kind === 'handle') this.board.handles.end(false)
     if (pressed) this.board.dropped(pressed.kind === 'move')
   }
 
@@ -216,6 +227,7 @@ export class BoardPointer {
         return board.paint()
       }
       if (pressed.kind === 'turn') return this.solid.turn(dx, dy)
+      if (pressed.kind === 'handle') return board.handles.move([at[0] - pressed.from[0], at[1] - pressed.from[1]])
       if (pressed.kind === 'move') return board.drag(this.moved(pressed))
       if (pressed.kind === 'axis') return board.turnAxis(pressed.axis, pressed.angles, at)
       if (pressed.kind === 'none') return
@@ -245,6 +257,7 @@ export class BoardPointer {
     // The tool that selects turns the solid where nothing of the drawing is meant.
     const turns = board.tool === 'select' && !hit.point && !hit.line && !name && this.solid.has(e)
     this.svg.style.cursor = turns ? 'grab' : ''
+    this.solid.lightFace(turns ? this.solid.faceAt(e) : -1)
   }
 
   private up(e: PointerEvent): void {
@@ -253,6 +266,8 @@ export class BoardPointer {
     if (!pressed || pressed.id !== e.pointerId) return
     this.pressed = null
     const at = this.at(e)
+    if (pressed.kind === 'handle') board.handles.end(pressed.moved)
+    if (pressed.kind === 'turn' && !pressed.moved) board.pickFace(this.solid.faceAt(e))
     if (pressed.kind === 'axis' && pressed.moved) board.axes(pressed.angles)
     if (pressed.kind === 'move' && pressed.moved) board.drop(this.moved({ ...pressed, at }), at)
     if (pressed.kind !== 'draw') return

@@ -17,7 +17,7 @@ use moldloft::sketch::command::words::{CommandToken, TextCommand, text_commands}
 use moldloft::sketch::{
     CommandReply, CoordinateAxis, DimensionMark, DrawingHit, Files, Free, ObjectChange, PenSample,
     PointId, ReplySubject, SketchCommand, SketchSession, SketchSolid, Snap, StrokeFault,
-    StrokePiece, Suggestion, TypeProposal, fit_stroke, pen_positions, scripts,
+    StrokePiece, Suggestion, TypeProposal, drawable_faces, fit_stroke, pen_positions, scripts,
 };
 use numpy::{PyArray1, PyArray2, PyArray3, PyArrayMethods};
 use pyo3::prelude::*;
@@ -215,6 +215,21 @@ fn mesh_arrays<'py>(
     let faces = PyArray2::<u32>::zeros(py, [mesh.faces().len(), 4], false);
     faces.readwrite().as_slice_mut()?.copy_from_slice(mesh.faces().as_flattened());
     Ok((vertices, faces))
+}
+
+/// The face of each facet of a body.
+fn facet_faces(solid: &SketchSolid<f64>) -> Vec<usize> {
+    let mesh = mesh_of(solid, None);
+    let mut own = vec![0; mesh.faces().len()];
+    for (face, patch) in mesh.patches().iter().enumerate() {
+        own[patch.faces.clone()].fill(face);
+    }
+    own
+}
+
+/// The plane across an axis, as `SKETCH 2D` names it.
+fn plane_of(axis: CoordinateAxis) -> String {
+    axis.others().iter().map(|a| a.letter()).collect()
 }
 
 /// Verb, words with the positions of their first and past their last character, and whether the
@@ -529,6 +544,55 @@ impl PySketch {
     ) -> PyResult<(Bound<'py, PyArray2<f64>>, Bound<'py, PyArray2<u32>>)> {
         let solid = self.solid(py, name)?;
         mesh_arrays(py, &solid, tolerance)
+    }
+
+    /// The body as `mesh` gives it, the face of each facet, and for each face on which a section can be
+    /// drawn its name in commands and the plane of that section.
+    #[allow(clippy::type_complexity)]
+    fn faces<'py>(
+        &self,
+        py: Python<'py>,
+        name: &str,
+    ) -> PyResult<(
+        Bound<'py, PyArray2<f64>>,
+        Bound<'py, PyArray2<u32>>,
+        Vec<usize>,
+        Vec<Option<(String, String)>>,
+    )> {
+        let solid = self.solid(py, name)?;
+        let (vertices, facets) = mesh_arrays(py, &solid, None)?;
+        let named = drawable_faces(&solid).into_iter();
+        let named = named.map(|face| face.map(|(name, axis)| (name, plane_of(axis))));
+        Ok((vertices, facets, facet_faces(&solid), named.collect()))
+    }
+
+    /// Of a section on a face: the body and the face; the place of the section by the images of the unit vectors and of
+    /// the origin; 1 if a positive extrusion is outside the body, else -1; the body as `mesh` gives it, and the
+    /// facets of the face.
+    #[allow(clippy::type_complexity)]
+    fn section_place<'py>(
+        &self,
+        py: Python<'py>,
+        name: &str,
+    ) -> PyResult<
+        Option<(
+            (String, String),
+            [[f64; 3]; 4],
+            f64,
+            (Bound<'py, PyArray2<f64>>, Bound<'py, PyArray2<u32>>),
+            Vec<usize>,
+        )>,
+    > {
+        let wanted = name.to_owned();
+        let Some(frame) = self.long(py, move |s| s.section_frame(&wanted))? else {
+            return Ok(None);
+        };
+        let [a, b, c] = frame.place.columns.map(|v| v.to_array());
+        let place = [a, b, c, frame.place.shift.to_array()];
+        let own = facet_faces(&frame.body);
+        let facets = (0..own.len()).filter(|k| frame.faces.contains(&own[*k])).collect();
+        let on = (frame.on.body, frame.on.face.to_string());
+        Ok(Some((on, place, frame.outward, mesh_arrays(py, &frame.body, None)?, facets)))
     }
 
     /// Derivatives by dimensions: of the volume, of the area, of the centroid `(n, 3)`, of the body's

@@ -56,6 +56,15 @@ impl std::fmt::Display for FaceChoice {
     }
 }
 
+/// Plane face of a body on which a section is drawn.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct SectionPlace {
+    /// Name of the body.
+    pub body: String,
+    /// The face.
+    pub face: FaceChoice,
+}
+
 /// Selection of edges that is stable under a change of dimensions.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum EdgeChoice {
@@ -213,8 +222,13 @@ pub enum FeatureKind {
     /// A body at another position.
     Place(Placement),
     /// The first body, moved along an axis until its origin is on a plane face of the second,
-    /// perpendicular to that axis.
-    OnFace(FaceChoice),
+    /// perpendicular to that axis; or with an axis of it turned to the normal of any plane face.
+    OnFace {
+        /// The face.
+        face: FaceChoice,
+        /// The axis of the first body that becomes the normal.
+        along: Option<CoordinateAxis>,
+    },
     /// The union of copies, each placed relative to the previous one.
     Pattern {
         /// Placement of a copy relative to the one before.
@@ -284,7 +298,7 @@ impl FeatureKind {
     pub fn numbers_mut(&mut self) -> Vec<&mut DimensionExpr> {
         match self {
             FeatureKind::Boolean(_)
-            | FeatureKind::OnFace(_)
+            | FeatureKind::OnFace { .. }
             | FeatureKind::Sweep
             | FeatureKind::Loft => vec![],
             FeatureKind::Text(text) => {

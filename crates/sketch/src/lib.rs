@@ -73,7 +73,7 @@ pub mod solid;
 
 pub use command::{
     CommandError, CommandReply, CommandReport, Files, NullFiles, ObjectChange, OutFile,
-    ReplySubject, SketchCommand, SketchSession, Suggestion,
+    ReplySubject, SectionFrame, SketchCommand, SketchSession, Suggestion, drawable_faces,
 };
 pub use dimension::expr::{DimensionExpr, FUNCTIONS, NoValue};
 pub use dimension::layout::{
@@ -96,7 +96,7 @@ pub use drawing::{
 };
 pub use feature::{
     EdgeBlend, EdgeChoice, FaceChoice, Feature, FeatureKind, FeatureOperand, Hole, HoleHead,
-    Placement, SectionText,
+    Placement, SectionPlace, SectionText,
 };
 pub use format::dimension_marks::DimensionMark;
 pub use format::script::{script, scripts};

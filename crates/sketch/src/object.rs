@@ -1,6 +1,6 @@
 //! One named object: a drawing, its dimensions, faces and curves.
 
-use crate::feature::{Feature, FeatureKind, FeatureOperand};
+use crate::feature::{Feature, FeatureKind, FeatureOperand, SectionPlace};
 use crate::identifier::identifier;
 use crate::solid::curve::SketchCurve;
 use crate::{
@@ -79,6 +79,8 @@ pub struct SketchObject {
     pub curves: IndexMap<String, SketchCurve>,
     /// Its definition, unless it is a drawing.
     pub feature: Option<Arc<Feature>>,
+    /// The face on which it is drawn, of a section.
+    pub on: Option<SectionPlace>,
 }
 
 /// For each of several objects, true if it is a result: no other object follows it, or it is kept.
@@ -195,7 +197,7 @@ impl SketchObject {
         let Some(feature) = &self.feature else { return false };
         match feature.kind {
             FeatureKind::Boolean(_) | FeatureKind::Pattern { .. } | FeatureKind::Hole(_) => true,
-            FeatureKind::Place(_) | FeatureKind::OnFace(_) => {
+            FeatureKind::Place(_) | FeatureKind::OnFace { .. } => {
                 feature.operands.first().is_some_and(|o| o.object.is_combined())
             }
             _ => false,

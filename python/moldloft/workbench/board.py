@@ -19,10 +19,12 @@ from typing import Any
 from moldloft import _core
 from moldloft.errors import Error
 from moldloft.shapes.sketch_values import Reply, SketchStroke
+from moldloft.workbench.handles import drawn_handles, faces, made_handles, section_place
 from moldloft.workbench.outlines import outlines
 from moldloft.workbench.room import answer_frames
 from moldloft.workbench.snaps import Axes, snapped
 from moldloft.workbench.statements import (
+    MAKING,
     Statement,
     block,
     place,
@@ -35,6 +37,7 @@ __all__ = ["Board", "serve"]
 
 #: Words that may follow a value of DIMENSION and GIVE.
 _AFTER_VALUE = {"REVERSED", "FORWARD", "ONLY"}
+_PLAIN = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)(e[-+]?\d+)?", re.IGNORECASE)
 _NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)(e[-+]?\d+)?\s*[a-z]*", re.IGNORECASE)
 
 #: Commands in the next step that a reply names.
@@ -66,6 +69,7 @@ class Board:
         self._guesses = self._new()
         self._guessed: list[str] = []
         self._object: str | None = None
+        self._placed: tuple[Any, dict[str, Any] | None] = (None, None)
 
     def _new(self) -> _core.SketchSession:
         session = _core.SketchSession(self._folder)
@@ -122,7 +126,8 @@ class Board:
         Parameters
         ----------
         changes
-            Each with ``do``: ``run``, ``move``, ``value``, ``type`` or ``axes``, and its arguments.
+            Each with ``do``: ``run``, ``move``, ``value``, ``type``, ``place`` or ``axes``, and its
+            arguments.
 
         Returns
         -------
@@ -134,11 +139,13 @@ class Board:
         edits: Places = []
         added: list[str] = []
         after: list[str] = []
+        ending: list[str] = []
         for change in changes:
             do = change.get("do")
             if do == "run":
                 command = str(change["command"])
-                (after if change.get("last") else added).append(command)
+                last = change.get("last")
+                (ending if last == "end" else after if last else added).append(command)
             elif do == "move":
                 u, v = (_number(x) for x in change["at"])
                 p = int(change["point"])
@@ -149,15 +156,22 @@ class Board:
                 for line in change["lines"]:
                     edits += self._type(own, int(line), str(change["type"]), added)
             elif do == "value":
-                edits += self._value(own, str(change["name"]), str(change["value"]), added)
+                edits += self._value(own, str(change["name"]), str(change["value"]), ending)
+            elif do == "place":
+                edits += self._place(own, int(change["point"]), change["at"], added)
             elif do == "axes":
                 edits += self._axes(own, str(change["axes"]))
             else:
                 raise RefusedError(f"`{do}` is nothing that the board does")
         if added:
+            if any(change.get("drawn") for change in changes):
+                added += self._first_place(added)
             edits.append(self._written(every, own, place(own), "; ".join(added)))
         if after:
             edits.append(self._written(every, own, own[-1] if own else None, "\n".join(after)))
+        if ending:
+            end = len(self._text.rstrip())
+            edits.append((end, len(self._text), "\n" * (end > 0) + "\n".join(ending) + "\n"))
         edits.sort(key=lambda e: e[:2])
         return self._changed(edits)
 
@@ -221,7 +235,7 @@ class Board:
             return [(s.tokens[k].start, s.tokens[k].end, letter)]
         return [(s.end, s.end, f" TYPE {letter}")]
 
-    def _value(self, own: Sequence[Statement], name: str, value: str, added: list[str]) -> Places:
+    def _value(self, own: Sequence[Statement], name: str, value: str, ending: list[str]) -> Places:
         value = value.strip().replace("−", "-")
         if not value or "\n" in value:
             raise RefusedError("give a number or an expression")
@@ -252,10 +266,58 @@ class Board:
                 least = (6 if "TO" in words else 5) if along else 4
                 found = (s, end - 1) if end > least else None
         if found is None:
-            added.append(f"SET {name} {given}")
-            return []
+            spans = self._literal(name, float(value)) if _PLAIN.fullmatch(value) else []
+            if not spans:
+                ending.append(f'USING "{self._object}"\nSET {name} {given}')
+            return [(*span, given) for span in spans]
         s, k = found
         return [(s.tokens[k].start, s.tokens[k].end, given)]
+
+    def _literal(self, name: str, value: float) -> list[tuple[int, int]]:
+        """The one word that is a number of a body, such as the length of EXTRUDE."""
+
+        def numbers(session: _core.SketchSession) -> dict[str, float | None]:
+            known = self._object in session.names()
+            return {n: x for n, x, *_ in session.numbers(str(self._object))} if known else {}
+
+        before = numbers(self._session)
+        rest = {n: x for n, x in before.items() if n != name}
+        for s in statements(self._text):
+            for token in s.tokens[1:] if s.verb in MAKING else ():
+                if not _PLAIN.fullmatch(token.text) or float(token.text) != before.get(name):
+                    continue
+                session = self._new()
+                tried = replaced(self._text, [(token.start, token.end, f"{value!r}")])
+                for line in tried.split("\n"):
+                    session.run_line(line)
+                if numbers(session) == {**rest, name: value}:
+                    return [(token.start, token.end)]
+        return []
+
+    def _first_place(self, added: Sequence[str]) -> list[str]:
+        """The position of the first point that is drawn on a face: where it is drawn."""
+        axes = self._axes_of(self._object)[1].units
+        if self._section_place(axes) is None or self._data()["points"]:
+            return []
+        for s in statements("; ".join(added)):
+            if s.verb == "POINT" and len(s.tokens) > 3:
+                u, v = (float(t.text) for t in s.tokens[-2:])
+                at = [(u * a + v * b) / (a * a + b * b) for a, b in axes.values()]
+                return [f"REFERENCE {s.word(1)} {' '.join(f'{x + 0.0:.9g}' for x in at)}"]
+        return []
+
+    def _place(
+        self, own: Sequence[Statement], point: int, at: Sequence[Any], added: list[str]
+    ) -> Places:
+        section = self._axes_of(self._object)[0]
+        shown = [x for x, axis in zip(at, "XYZ", strict=True) if section is None or axis in section]
+        words = " ".join(f"{float(x):.12g}" for x in shown)
+        found = None
+        for s in own:
+            k = 1 if s.verb == "REFERENCE" else 2
+            if (s.verb == "REFERENCE" or s.word(1) == "REFERENCE") and s.word(k) == str(point):
+                found = (s, k + 1) if len(s.tokens) == k + 1 + len(shown) else None
+        return self._over(found, len(shown), words, added, f"REFERENCE {point} {words}")
 
     @staticmethod
     def _axes(own: Sequence[Statement], axes: str) -> Places:
@@ -307,19 +369,14 @@ class Board:
                 u, v = (_number(x) for x in move["at"])
                 session.run_line(f"POINT {int(move['point'])} AT {u} {v}")
             out.update(self._object_facts(self._data()))
-            given = {m[0] for m in session.marks(name, None)}
             out["marks"] = [_mark(m) for m in session.marks(name, None)]
+            given = {m["name"] for m in out["marks"]}
             session.run_line("ACCEPT ALL")
             labels, places = session.points(name)
             guess = dict(zip(labels.tolist(), places.tolist(), strict=True))
             for p in out["points"]:
                 p[3] = [x if math.isfinite(x) else None for x in guess.get(p[0], [math.nan] * 3)]
-            measured = {d["name"]: d["measures"].split() for d in self._data()["dimensions"]}
-            for mark in map(_mark, session.marks(name, None)):
-                words = measured.get(mark["name"], [])
-                if mark["name"] not in given and len(words) == 4:
-                    ends = {"p": int(words[1]), "q": int(words[3])}
-                    out["next"].append({**mark, **ends})
+            out["next"] += [m for m in self._marks(self._data(), given) if "q" in m]
 
         self._aside(look)
         return out
@@ -355,10 +412,24 @@ class Board:
             "lines": lines,
             "planes": planes,
             "missing": data["missing"],
-            "faces": len(data["faces"]),
+            "faces": len(data["faces"]) or int(self._made(data)),
+            "place": self._section_place(axes.units),
             "numbers": {d["name"]: d["value"] for d in data["dimensions"]},
             "next": [],
         }
+
+    @staticmethod
+    def _made(data: dict[str, Any]) -> bool:
+        """True for an object with a body: drawn with its faces, or made of others."""
+        return bool(data["faces"]) or (data["state"] == "solid" and data["volume"] is not None)
+
+    def _section_place(self, units: dict[str, list[float]]) -> dict[str, Any] | None:
+        """The face on which the object is drawn, computed once for a text."""
+        key = self._text, self._object
+        if self._placed[0] != key:
+            found = section_place(self._session, self._object or "", units)
+            self._placed = key, found
+        return self._placed[1]
 
     def check(self) -> list[dict[str, Any]]:
         """Doubtful and contradictory parts, with remedies."""
@@ -423,7 +494,7 @@ class Board:
         out["commands"] = "; ".join(commands)
         out["remarks"] = [r.text for r in replies if r.severity == "warning"]
         if not request.get("trial") and commands:
-            out["edits"] = self.edit([{"do": "run", "command": out["commands"]}])
+            out["edits"] = self.edit([{"do": "run", "command": out["commands"], "drawn": True}])
             out.update(self.facts())
         return out
 
@@ -445,25 +516,29 @@ class Board:
             if trial is not None:
                 session.run_line(trial)
             data = self._data()
+            given = {m[0] for m in session.marks(name, None)}
             out["exact"] = not any(data["missing"].values())
-            out["made"] = bool(data["faces"])
+            out["made"] = self._made(data)
             session.run_line("ACCEPT ALL")
-            if not data["faces"]:
+            if not out["made"]:
                 for reply in map(Reply.from_row, session.run_line("GENERATE FACES")):
                     if reply.is_error:
                         out["why"] = {"text": reply.text, "code": reply.code}
             data = self._data()
             out.update({"volume": data["volume"], "area": data["area"]})
-            if not data["faces"]:
+            if trial is None:
+                out["handles"] = self._handles(data, given)
+            if not self._made(data):
                 labels, places = session.points(name)
                 ends = [(ln["points"][0], ln["points"][1]) for ln in data["lines"]]
                 at = dict(zip(labels.tolist(), places.tolist(), strict=True))
                 out["outlines"] = outlines(ends, at)
             try:
-                vertices, faces = session.mesh(name, None)
+                out.update(faces(session, name))
             except Error:
                 return
-            out.update(_shape(vertices, faces))
+            if not (out["made"] and out["exact"]):
+                out["names"] = []
             # Of a wireframe that several solids fit, all are shown.
             with contextlib.suppress(Error):
                 fits = [_shape(*fit) for fit in session.candidates(name, False)]
@@ -471,6 +546,28 @@ class Board:
 
         self._aside(look)
         return out
+
+    def _marks(self, data: dict[str, Any], given: set[str]) -> list[dict[str, Any]]:
+        """The dimensions of the object; those not given before with ``p`` and ``q``."""
+        measured = {d["name"]: d["measures"].split() for d in data["dimensions"]}
+        marks = [_mark(m) for m in self._session.marks(str(self._object), None)]
+        for mark in marks:
+            words = measured.get(mark["name"], [])
+            if mark["name"] not in given and len(words) == 4:
+                mark |= {"p": int(words[1]), "q": int(words[3])}
+        return marks
+
+    def _handles(self, data: dict[str, Any], given: set[str]) -> list[dict[str, Any]]:
+        """The arrows of the object, whose missing dimensions have the values of the picture."""
+        name = str(self._object)
+        if not data["lines"]:
+            return made_handles(self._session, name)
+        own = block(statements(self._text), name)
+        facts = self._object_facts(data)
+        labels, places = self._session.points(name)
+        at = dict(zip(labels.tolist(), places.tolist(), strict=True))
+        marks = self._marks(data, given)
+        return drawn_handles(own, data, facts["section"], facts["planes"], at, marks)
 
     def pointer(self, request: dict[str, Any]) -> dict[str, Any]:
         """Meaning of a pointer position: a snap, and the type of a line to that position.
@@ -502,7 +599,7 @@ class Board:
     def _guess(self, start: Sequence[float], end: Sequence[float]) -> dict[str, Any]:
         """The type of a line by its slope, as inferred by the command LINE."""
         head = [
-            line
+            re.sub(r" ON .*", "", line)
             for line in self._session.text(self._object).splitlines()
             if line.startswith(("SKETCH ", "AXES "))
         ]

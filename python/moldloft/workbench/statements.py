@@ -12,10 +12,10 @@ from dataclasses import dataclass
 
 from moldloft import _core
 
-__all__ = ["Statement", "Token", "block", "replaced", "statements", "units"]
+__all__ = ["MAKING", "Statement", "Token", "block", "replaced", "statements", "units"]
 
 #: What makes a body of a drawing, or looks at it: drawing and dimensions are written before it.
-_SOLID = {
+MAKING = {
     "CONVERT", "GENERATE", "CREATE", "FACE", "CHOOSE", "OFFSET", "SWEEP", "LOFT", "EXTRUDE",
     "REVOLVE", "CLEAN", "MEASURE", "END", "CHECK", "LIST", "UNION", "CUT", "COMMON", "MERGE",
     "PATTERN", "FILLET", "CHAMFER", "SHELL", "DRAFT", "HOLE", "COPY", "MOVE", "ROTATE", "MIRROR",
@@ -99,7 +99,7 @@ def place(own: Sequence[Statement]) -> Statement | None:
     """
     last = None
     for s in own:
-        if s.verb in _SOLID:
+        if s.verb in MAKING:
             break
         last = s
     return last

@@ -37,6 +37,8 @@ class BoardHand(Bench):
         """All gestures are in the text, and the board shows it."""
         self.hand("board.settled()")
         self.hand("settled()")
+        # A step of the history that was taken elsewhere in the page.
+        self.hand("board.settled()")
         return self.look()
 
     def begin(self, words: str) -> None:

@@ -9,10 +9,12 @@ import os
 import re
 import shutil
 import signal
+import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
 from board_by_hand import BoardHand
@@ -56,6 +58,7 @@ def draw_dam(b: BoardHand) -> None:
 
 
 def test_a_dam_from_nothing(board: Callable[..., BoardHand]) -> None:
+    begin = time.monotonic()
     b = board()
     texts = [b.text()]
     assert texts == [""]
@@ -87,6 +90,16 @@ def test_a_dam_from_nothing(board: Callable[..., BoardHand]) -> None:
     assert sorted(drawn) == sorted(["X"] * 4 + ["Y"] * 5 + ["Z"] * 4 + ["XZ"] * 2)
     # The model beside it has the body.
     b.until(lambda: any(i["kind"] == "patch" or "solid" in i["name"] for i in b.hand("items()")))
+    # From the empty page to the file of a printer: the signed volume of its triangles.
+    b.page.get_by_role("button", name="Export").click()
+    with b.page.expect_download(timeout=60_000) as found:
+        b.page.get_by_role("option", name="Export: stl, ").click()
+    stl = Path(found.value.path()).read_bytes()
+    facets = np.frombuffer(stl[84:], np.dtype([("f", "<f4", (4, 3)), ("pad", "<u2")]))["f"]
+    a, p, q = facets[:, 1:].astype(float).transpose(1, 0, 2)
+    assert abs(np.einsum("ij,ij->", a, np.cross(p, q)) / 6) == pytest.approx(169_200, rel=1e-6)
+    assert time.monotonic() - begin < 180
+    b.page.locator("svg.paper").focus()
     # Each gesture is one step back, to the start, and forth again.
     steps = 0
     while b.text():

@@ -84,7 +84,7 @@ def gesture(b: BoardHand, chance: random.Random, facts: dict[str, Any]) -> str:
     acts = ["chain", "stroke", "stroke", "axis"]
     if lines:
         acts += ["move", "move line", "type", "delete", "duplicate", "dimension", "confirm"]
-        acts += ["undo", "undo", "redo", "lose"]
+        acts += ["undo", "undo", "redo", "lose", "pull", "pull by keys"]
     act = chance.choice(acts) if len(places) < LARGEST else "undo"
     if act == "chain":
         b.key("d")
@@ -122,6 +122,25 @@ def gesture(b: BoardHand, chance: random.Random, facts: dict[str, Any]) -> str:
             b.key("Enter", "Escape")
     elif act == "confirm":
         b.key("t")
+    elif act == "pull":
+        b.key("v", "Escape")
+        found = b.settle()
+        if found["handles"]:
+            (x, y), (left, top) = chance.choice(found["handles"])["at"], found["origin"]
+            b.page.mouse.move(left + x, top + y)
+            b.page.mouse.down()
+            b.page.mouse.move(
+                left + x + chance.uniform(-40, 40), top + y + chance.uniform(-40, 40), steps=3
+            )
+            b.page.mouse.up()
+            b.hand("board.settled()")
+    elif act == "pull by keys":
+        b.page.locator("svg.paper").focus()
+        b.key("g")
+        b.key(
+            *chance.choices(["ArrowUp", "ArrowDown", "g"], k=3), chance.choice(["Enter", "Escape"])
+        )
+        b.page.locator("svg.paper").focus()
     elif act == "undo":
         for _ in range(chance.randint(1, 3)):
             b.key("Control+z")

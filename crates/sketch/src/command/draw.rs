@@ -41,6 +41,13 @@ impl SketchSession {
             args.take_short("3D");
             None
         };
+        let (on, section) = match args.take_short("ON") {
+            true => {
+                let (on, axis) = self.section_on(args, section)?;
+                (Some(on), Some(axis))
+            }
+            false => (None, section),
+        };
         args.end()?;
         let key = name.to_lowercase();
         match self.state.objects.get(&key) {
@@ -59,6 +66,9 @@ impl SketchSession {
                 .about(ReplySubject::of("section-or-space").names([&old.name])));
             }
             _ => self.insert(SketchObject::new(&name, section)),
+        }
+        if on.is_some() {
+            self.active_mut()?.on = on;
         }
         Ok(())
     }

@@ -102,7 +102,7 @@ impl SketchSession {
     }
 
     /// Replaces `target` by an object of a feature.
-    fn make(
+    pub(super) fn make(
         &mut self,
         feature: Feature,
         target: &str,
@@ -207,7 +207,7 @@ impl SketchSession {
         }
         let object = self.section_with_faces(object)?;
         // Its numbers keep their names.
-        let operands = vec![FeatureOperand::part(object)];
+        let operands = vec![FeatureOperand::part(Arc::clone(&object))];
         let kind = FeatureKind::Revolve { line: [line.p, line.q], angle };
         self.make(Feature { kind, operands }, &target, |why| match why {
             NoBody::Axis => Some(CommandError::new(
@@ -216,7 +216,8 @@ impl SketchSession {
                 "revolve about a line on its border or beside it",
             )),
             _ => None,
-        })
+        })?;
+        self.onto_face(&object, &target)
     }
 
     /// `PATTERN name LINEAR n dx dy dz | POLAR n axis angle [THROUGH x y z] | MIRROR axis [at]
@@ -265,37 +266,6 @@ impl SketchSession {
             return Ok([0.0; 3].map(DimensionExpr::number));
         }
         Ok([args.value(units)?, args.value(units)?, args.value(units)?])
-    }
-
-    /// `MOVE a ON b face [INTO c]`.
-    fn place_on(&mut self, object: Arc<SketchObject>, args: &mut Args) -> Result<(), CommandError> {
-        let base = args.name("the name of a body")?;
-        let base = self.operand(&base)?;
-        let face = super::treatments::face_choice(args)?;
-        let target = self.target(args, &object.name)?;
-        args.end()?;
-        for part in [&object, &base] {
-            if part.drawing.section.is_some() {
-                return Err(CommandError::new(
-                    114,
-                    format!("{} is a cross section; only solids are placed on faces", part.name),
-                    "EXTRUDE it first",
-                )
-                .about(ReplySubject::of("cross-section").names([&part.name])));
-            }
-            self.require_body(part)?;
-        }
-        if base.name.eq_ignore_ascii_case(&object.name) || base.name.eq_ignore_ascii_case(&target) {
-            return Err(CommandError::text(
-                format!("{} cannot be placed on itself", base.name),
-                "COPY makes another",
-            )
-            .about(ReplySubject::of("object-twice").names([&base.name])));
-        }
-        let prefix = format!("{}.", identifier(&base.name));
-        let base = FeatureOperand { object: base, prefix, follows: true };
-        let operands = vec![FeatureOperand::part(object), base];
-        self.make(Feature { kind: FeatureKind::OnFace(face), operands }, &target, |_| None)
     }
 
     /// MOVE, ROTATE, MIRROR, SCALE of objects without a drawing, or by any angle.

@@ -72,6 +72,14 @@ impl SketchSession {
                 "SAVE object AS name.skt",
             ));
         }
+        // A section on a face is written with the body.
+        let mut k = 0;
+        while let Some(object) = names.get(k).and_then(|n| self.object(n)) {
+            k += 1;
+            let body = object.on.as_ref().and_then(|on| self.object(&on.body));
+            let body = body.map(|o| o.name.clone());
+            names.extend(body.filter(|b| names.iter().all(|n| !n.eq_ignore_ascii_case(b))));
+        }
         let objects: Vec<&SketchObject> = names.iter().filter_map(|n| self.object(n)).collect();
         let texts = scripts(&objects).into_iter();
         let text = if file.to_ascii_lowercase().ends_with(".json") {

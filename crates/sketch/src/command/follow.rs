@@ -120,6 +120,9 @@ impl SketchSession {
                 rename_in(Arc::make_mut(object), &old.to_lowercase(), new, &prefixes);
             }
         }
+        for object in self.state.objects.values_mut() {
+            rename_place(object, old, &new.name, &prefixes);
+        }
     }
 
     /// Owner of a number that does not belong to the active object: the folded name of the owner,
@@ -179,17 +182,48 @@ fn rename_in(
             }
         }
     }
-    for face in faces_of(feature) {
-        if let FaceChoice::Named(name) = face {
-            let parts: Vec<String> = (name.split('+'))
-                .map(|part| match part.find(&prefixes[0]) {
-                    Some(k) if k == 0 || part.as_bytes()[k - 1] == b'.' => {
-                        part.replacen(&prefixes[0], &prefixes[1], 1)
-                    }
-                    _ => part.to_owned(),
-                })
-                .collect();
-            *name = parts.join("+");
+    faces_of(feature).into_iter().for_each(|face| rename_face(face, prefixes));
+}
+
+fn rename_face(face: &mut FaceChoice, prefixes: &[String; 2]) {
+    if let FaceChoice::Named(name) = face {
+        let parts: Vec<String> = (name.split('+'))
+            .map(|part| match part.find(&prefixes[0]) {
+                Some(k) if k == 0 || part.as_bytes()[k - 1] == b'.' => {
+                    part.replacen(&prefixes[0], &prefixes[1], 1)
+                }
+                _ => part.to_owned(),
+            })
+            .collect();
+        *name = parts.join("+");
+    }
+}
+
+/// Renames the body of a section's face, also of the parts of features.
+fn rename_place(object: &mut Arc<SketchObject>, old: &str, new: &str, prefixes: &[String; 2]) {
+    let named = |o: &SketchObject| {
+        let on = o.on.as_ref();
+        on.is_some_and(|on| {
+            on.body.eq_ignore_ascii_case(old) || on.face.to_string().contains(&prefixes[0])
+        })
+    };
+    fn any(object: &SketchObject, found: &dyn Fn(&SketchObject) -> bool) -> bool {
+        let operands = object.feature.iter().flat_map(|f| &f.operands);
+        found(object) || operands.filter(|o| !o.follows).any(|o| any(&o.object, found))
+    }
+    if !any(object, &named) {
+        return;
+    }
+    let object = Arc::make_mut(object);
+    if let Some(on) = &mut object.on {
+        rename_face(&mut on.face, prefixes);
+        if on.body.eq_ignore_ascii_case(old) {
+            new.clone_into(&mut on.body);
+        }
+    }
+    if let Some(feature) = &mut object.feature {
+        for operand in Arc::make_mut(feature).operands.iter_mut().filter(|o| !o.follows) {
+            rename_place(&mut operand.object, old, new, prefixes);
         }
     }
 }
@@ -203,7 +237,7 @@ fn faces_of(feature: &mut Feature) -> Vec<&mut FaceChoice> {
                 _ => vec![],
             })
             .collect(),
-        FeatureKind::OnFace(face) => vec![face],
+        FeatureKind::OnFace { face, .. } => vec![face],
         FeatureKind::Shell { open: faces, .. } | FeatureKind::Draft { faces, .. } => {
             faces.iter_mut().collect()
         }

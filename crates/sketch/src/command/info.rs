@@ -885,18 +885,18 @@ pub(super) fn likely_aligns(
 }
 
 /// For each part that is not connected to the reference, the dimension to the nearest known plane.
-pub(super) fn suggestions(
-    object: &SketchObject,
-    view: &DrawingCache,
-    layout: &DimensionLayout<f64>,
-) -> Vec<Option<Suggestion>> {
+pub(super) fn suggestions<'a>(
+    object: &'a SketchObject,
+    view: &'a DrawingCache,
+    layout: &'a DimensionLayout<f64>,
+) -> impl Iterator<Item = Option<Suggestion>> + 'a {
     let planes = &view.planes;
-    if object.drawing.exact {
-        return layout.loose.iter().map(|loose| as_drawn(object, planes, layout, loose)).collect();
-    }
-    let estimate = view.estimate();
+    let estimate = if object.drawing.exact { None } else { view.estimate() };
     let scale = estimate.map(|e| crate::scale(object, planes, layout, e));
-    let one = |loose: &crate::Loose| {
+    let one = move |loose: &crate::Loose| {
+        if object.drawing.exact {
+            return as_drawn(object, planes, layout, loose);
+        }
         let (axis, own) = (loose.axis, loose.planes[0]);
         let (e, scale) = (estimate?, scale?);
         let known = (0..planes.counts()[axis.index()])
@@ -908,7 +908,7 @@ pub(super) fn suggestions(
         let open = !e.determines(axis, k, own);
         Some(Suggestion { axis, p, q, value: rounded(gap(k).abs()), open })
     };
-    layout.loose.iter().map(one).collect()
+    layout.loose.iter().map(one)
 }
 
 /// The dimension of an exact drawing that connects planes to those that are known.

@@ -74,6 +74,7 @@ impl SketchSession {
         let name = args.name("the name of a cross section")?;
         let object = self.operand(&name)?;
         self.section_axis(&object)?;
+        self.not_on_face(&object, "SWEEP")?;
         if !args.take("ALONG") {
             return Err(args.wants("ALONG and the name of a path"));
         }
@@ -115,6 +116,7 @@ impl SketchSession {
             let name = args.name("the name of a cross section")?;
             let object = self.operand(&name)?;
             self.section_axis(&object)?;
+            self.not_on_face(&object, "LOFT")?;
             if sections.iter().any(|s| s.name.eq_ignore_ascii_case(&object.name)) {
                 return Err(CommandError::text(
                     format!("LOFT wants different sections, not {} twice", object.name),
@@ -146,8 +148,9 @@ impl SketchSession {
         let object = self.section_with_faces(object)?;
         let mut own = OwnNumbers::of(&object);
         let distance = own.add("EXTRUDE", distance)?;
-        let operands = vec![FeatureOperand::part(object)];
+        let operands = vec![FeatureOperand::part(Arc::clone(&object))];
         let kind = FeatureKind::Extrude(distance);
-        self.make_with(Feature { kind, operands }, own.made, target, |_| None)
+        self.make_with(Feature { kind, operands }, own.made, target, |_| None)?;
+        self.onto_face(&object, target)
     }
 }

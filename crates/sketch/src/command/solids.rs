@@ -313,7 +313,7 @@ impl SketchSession {
                 out.draw().aligns.extend(aligned);
                 continue;
             }
-            let found = suggestions(&out, &view, &layout).into_iter().flatten();
+            let found = suggestions(&out, &view, &layout).flatten();
             // A picture's suggestion changes with each dimension; an exact drawing gives all at
             // once.
             let many = if out.drawing.exact { usize::MAX } else { 1 };
@@ -460,7 +460,7 @@ impl SketchSession {
         };
         let axis = args.axis();
         let value = args.value(object.units.as_deref())?;
-        let follows = args.len() > 0 || object.feature.is_some();
+        let follows = args.len() > 0 || object.feature.is_some() || object.on.is_some();
         let target = self.target(args, &object.name)?;
         args.end()?;
         let normal = self.section_axis(&object)?;

@@ -268,7 +268,7 @@ impl SketchSession {
     pub fn suggestions(&mut self, name: &str) -> Option<Vec<Option<Suggestion>>> {
         let object = self.object(name)?.clone();
         let (view, layout) = self.laid_out(&object);
-        Some(suggestions(&object, &view, &layout))
+        Some(suggestions(&object, &view, &layout).collect())
     }
 
     /// The solids that fit the wireframe of an object, likeliest first, whether their faces are accepted or not.

@@ -42,6 +42,65 @@ pub(crate) struct Page<'a> {
     pub unit: &'a dyn Fn(CoordinateAxis) -> [f64; 2],
 }
 
+/// A drawing in the coordinates along and across a direction of the page.
+struct PageFrame {
+    /// The points, in the order of the places; `None` where the directions are parallel.
+    points: Vec<Option<[f64; 2]>>,
+    /// The lines, from their lower ends.
+    lines: Vec<[[f64; 2]; 2]>,
+}
+
+impl PageFrame {
+    fn of(
+        drawing: &Drawing,
+        places: &BTreeMap<PointId, [f64; 2]>,
+        [a, w]: [[f64; 2]; 2],
+    ) -> PageFrame {
+        let line = |p: PointId, q: PointId| {
+            let [p, q] = [p, q].map(|p| places.get(&p).and_then(|at| split(*at, a, w)));
+            let (p, q) = (p?, q?);
+            Some(if p[0] <= q[0] { [p, q] } else { [q, p] })
+        };
+        PageFrame {
+            points: places.values().map(|at| split(*at, a, w)).collect(),
+            lines: drawing.lines.values().filter_map(|l| line(l.p, l.q)).collect(),
+        }
+    }
+}
+
+/// The points of a drawing by their planes, with its frames of two axes.
+struct PageLayout {
+    places: BTreeMap<PointId, [f64; 2]>,
+    /// Of each point its planes.
+    classes: Vec<[Option<usize>; 3]>,
+    /// By axis and plane, the indices of the points.
+    members: BTreeMap<(usize, usize), Vec<usize>>,
+    frames: [[Option<PageFrame>; 3]; 3],
+}
+
+impl PageLayout {
+    fn of(drawing: &Drawing, planes: &Planes, page: &Page<'_>) -> PageLayout {
+        let places: BTreeMap<PointId, [f64; 2]> =
+            drawing.points.keys().filter_map(|&p| Some((p, (page.place)(p)?))).collect();
+        let classes: Vec<[Option<usize>; 3]> =
+            places.keys().map(|&p| CoordinateAxis::ALL.map(|a| planes.plane(a, p))).collect();
+        let mut members: BTreeMap<(usize, usize), Vec<usize>> = BTreeMap::new();
+        for (k, own) in classes.iter().enumerate() {
+            for (axis, plane) in own.iter().enumerate() {
+                if let Some(plane) = plane {
+                    members.entry((axis, *plane)).or_default().push(k);
+                }
+            }
+        }
+        let frame = |a: CoordinateAxis, w: CoordinateAxis| {
+            let units = [(page.unit)(a), (page.unit)(w)];
+            (a != w).then(|| PageFrame::of(drawing, &places, units))
+        };
+        let frames = CoordinateAxis::ALL.map(|a| CoordinateAxis::ALL.map(|w| frame(a, w)));
+        PageLayout { classes, members, frames, places }
+    }
+}
+
 /// A dimension line that is still to be put in its row: the axes of its direction and its witness lines.
 struct UnplacedMark {
     mark: usize,
@@ -62,11 +121,14 @@ pub(crate) fn dimension_marks(
     values: &dyn Fn(&str) -> Option<f64>,
 ) -> Vec<DimensionMark> {
     let drawing = &object.drawing;
-    let places: Vec<(PointId, [f64; 2])> =
-        drawing.points.keys().filter_map(|&p| Some((p, (page.place)(p)?))).collect();
+    if object.dimensions.is_empty() {
+        return vec![];
+    }
+    let layout = PageLayout::of(drawing, planes, page);
+    let places = &layout.places;
     let size = {
         let extent = |k: usize| {
-            let all = places.iter().map(|p| p.1[k]);
+            let all = places.values().map(|p| p[k]);
             let (l, h) = all.fold((f64::MAX, f64::MIN), |(l, h), x| (l.min(x), h.max(x)));
             h - l
         };
@@ -97,7 +159,7 @@ pub(crate) fn dimension_marks(
         let at = match dimension.measure {
             MeasuredQuantity::Along { axis, p, q } => {
                 mark.axis = Some(axis);
-                match beside(drawing, planes, page, &places, axis, [p, q]) {
+                match beside(drawing, planes, page, &layout, axis, [p, q]) {
                     Some(row) => {
                         rows.push(UnplacedMark { mark: marks.len(), ..row });
                         Some([0.0; 2])
@@ -160,15 +222,18 @@ fn beside(
     drawing: &Drawing,
     planes: &Planes,
     page: &Page<'_>,
-    places: &[(PointId, [f64; 2])],
+    layout: &PageLayout,
     axis: CoordinateAxis,
     ends: [PointId; 2],
 ) -> Option<UnplacedMark> {
     let a = (page.unit)(axis);
     let of_planes = ends.map(|p| planes.plane(axis, p));
     let [Some(first), Some(second)] = of_planes else { return None };
-    let at_end = |p: PointId| places.iter().find(|(id, _)| *id == p).map(|(_, at)| *at);
-    let [Some(begin), Some(end)] = ends.map(at_end) else { return None };
+    let [Some(begin), Some(end)] = ends.map(|p| layout.places.get(&p).copied()) else {
+        return None;
+    };
+    let of_plane = |plane| layout.members.get(&(axis.index(), plane)).map_or(&[][..], |m| m);
+    let members = [first, second].map(of_plane);
     // Level pairs, and the dimension's own points.
     let mut best: [Option<(f64, UnplacedMark)>; 2] = [None, None];
     for across in CoordinateAxis::ALL.into_iter().filter(|w| *w != axis) {
@@ -177,20 +242,16 @@ fn beside(
         }
         let w = (page.unit)(across);
         let third = CoordinateAxis::ALL.into_iter().find(|t| *t != axis && *t != across);
-        let class = |p: PointId| {
-            third.filter(|t| drawing.section != Some(*t)).and_then(|t| planes.plane(t, p))
-        };
+        let third = third.filter(|t| drawing.section != Some(*t));
+        let class = |k: usize| third.and_then(|t| layout.classes[k][t.index()]);
+        let Some(frame) = &layout.frames[axis.index()][across.index()] else { continue };
         for side in [-1.0, 1.0] {
             // The outermost point of each plane, by its coordinate on the third axis.
             let mut outer: [BTreeMap<Option<usize>, [f64; 2]>; 2] = Default::default();
-            for &(p, at) in places {
-                let own = planes.plane(axis, p);
-                for (k, plane) in [first, second].into_iter().enumerate() {
-                    if own != Some(plane) {
-                        continue;
-                    }
-                    let Some(at) = split(at, a, w) else { continue };
-                    let known = outer[k].entry(class(p)).or_insert(at);
+            for (outer, members) in outer.iter_mut().zip(members) {
+                for &k in members {
+                    let Some(at) = frame.points[k] else { continue };
+                    let known = outer.entry(class(k)).or_insert(at);
                     if side * at[1] > side * known[1] {
                         *known = at;
                     }
@@ -203,7 +264,7 @@ fn beside(
             let pairs = level.map(|pair| (0, pair)).chain(own.map(|pair| (1, pair)));
             for (kind, (from, to)) in pairs {
                 let reach = [from[0].min(to[0]), from[0].max(to[0])];
-                let clear = outermost(drawing, page, [a, w], reach, side);
+                let clear = outermost(frame, reach, side);
                 let clear = clear.max(side * from[1]).max(side * to[1]);
                 let cost = (clear - side * from[1]) + (clear - side * to[1]);
                 let row = UnplacedMark { mark: 0, axis, across, side, ends: [from, to], clear };
@@ -218,19 +279,10 @@ fn beside(
 }
 
 /// Maximum extent of a drawing's lines to a side of an axis, between two positions along it.
-fn outermost(
-    drawing: &Drawing,
-    page: &Page<'_>,
-    [a, w]: [[f64; 2]; 2],
-    reach: [f64; 2],
-    side: f64,
-) -> f64 {
+fn outermost(frame: &PageFrame, reach: [f64; 2], side: f64) -> f64 {
     let mut far = f64::NEG_INFINITY;
     let slack = 1e-6 * (reach[1] - reach[0]);
-    for line in drawing.lines.values() {
-        let ends = [line.p, line.q].map(|p| (page.place)(p).and_then(|at| split(at, a, w)));
-        let [Some(p), Some(q)] = ends else { continue };
-        let (p, q) = if p[0] <= q[0] { (p, q) } else { (q, p) };
+    for &[p, q] in &frame.lines {
         let (low, high) = (p[0].max(reach[0] + slack), q[0].min(reach[1] - slack));
         if low > high {
             continue;

@@ -49,7 +49,7 @@ fn range_text(range: Option<[f64; 2]>) -> String {
 }
 
 /// A face as commands name it: in quotes where its name could be another word.
-fn face_text(face: &FaceChoice) -> String {
+pub(crate) fn face_text(face: &FaceChoice) -> String {
     match face {
         FaceChoice::Named(name) if name.parse::<u32>().is_ok() => name.clone(),
         FaceChoice::Named(name) => format!("\"{name}\""),
@@ -84,6 +84,11 @@ pub fn scripts<'a>(objects: &[&'a SketchObject]) -> Vec<(&'a SketchObject, Strin
         }
         let object = given.iter().copied().find(namesake).unwrap_or(object);
         add_followed(object, given, out);
+        let below = object.on.as_ref().map(|on| &on.body);
+        let below = below.and_then(|b| given.iter().find(|o| o.name.eq_ignore_ascii_case(b)));
+        if let Some(body) = below.filter(|body| !namesake(body)) {
+            add(body, given, out);
+        }
         let mut text = String::new();
         // Writing to a string cannot fail.
         let _ = write(object, &mut text);
@@ -169,9 +174,10 @@ fn write_feature(object: &SketchObject, feature: &Feature, out: &mut String) -> 
             };
             format!("{word} {parts} {} FEATURE INTO {name}", place(p))
         }
-        FeatureKind::OnFace(face) => {
+        FeatureKind::OnFace { face, along } => {
             let [object, base] = [0, 1].map(|k| quoted(&feature.operands[k].object.name));
-            format!("MOVE {object} ON {base} {} INTO {name}", face_text(face))
+            let along = along.map_or(String::new(), |axis| format!(" ALONG {axis}"));
+            format!("MOVE {object} ON {base} {}{along} INTO {name}", face_text(face))
         }
         FeatureKind::Pattern { step, count } => {
             let word = match step {
@@ -311,7 +317,11 @@ fn write(object: &SketchObject, out: &mut String) -> std::fmt::Result {
         Some(CoordinateAxis::Z) => " 2D XY",
         None => "",
     };
-    writeln!(out, "SKETCH {}{section}", quoted(&object.name))?;
+    let on = object
+        .on
+        .as_ref()
+        .map_or(String::new(), |on| format!(" ON {} {}", quoted(&on.body), face_text(&on.face)));
+    writeln!(out, "SKETCH {}{section}{on}", quoted(&object.name))?;
     if drawing.letters.up != CoordinateAxis::Z {
         writeln!(out, "SET UP {}", drawing.letters.up)?;
     }

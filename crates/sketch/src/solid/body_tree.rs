@@ -45,7 +45,7 @@ impl Feature {
         };
         match &self.kind {
             FeatureKind::Boolean(operation) => Some(BodyTree::Combined(*operation, operands()?)),
-            FeatureKind::Place(_) | FeatureKind::OnFace(_) | FeatureKind::Pattern { .. } => {
+            FeatureKind::Place(_) | FeatureKind::OnFace { .. } | FeatureKind::Pattern { .. } => {
                 let laid = self.laid(layout);
                 let images = self.images(layout, &laid, &FacetPlan::default()).ok()?;
                 let (planes, own) = laid.first()?;

@@ -3,8 +3,8 @@
 use super::blend::blended;
 use super::blend_order::BlendSize;
 use super::combine::{CombineError, combined, united};
-use super::edges::FaceForm;
 pub use super::edges::TreatmentFault;
+use super::face_place::FacePlane;
 use super::kept_bodies::{KeptBodies, KeptBody, numbers};
 use super::loft::lofted;
 use super::offset::{drafted, moved, shelled};
@@ -62,10 +62,6 @@ pub enum NoBody {
     /// The section is on both sides of the axis of rotation, or the axis has zero length.
     Axis,
 }
-
-/// Components of a normal below this are zero, and coordinates within this fraction of the extent
-/// are equal.
-const SQUARE: f64 = 1e-9;
 
 /// More copies than this are refused.
 pub(crate) const MAX_COPIES: u32 = 400;
@@ -275,7 +271,9 @@ pub(super) fn body_at<T: Real>(
 ) -> Result<SketchSolid<T>, NoBody> {
     let made = match &object.feature {
         // A moved body closes as it did.
-        Some(feature) if matches!(feature.kind, FeatureKind::Place(_) | FeatureKind::OnFace(_)) => {
+        Some(feature)
+            if matches!(feature.kind, FeatureKind::Place(_) | FeatureKind::OnFace { .. }) =>
+        {
             return feature.body(layout, plan);
         }
         Some(feature) => feature.body(layout, plan)?,
@@ -299,6 +297,7 @@ impl Feature {
         };
         let mut out = SketchObject::new(name, section.filter(|_| self.kind.makes_section()));
         if let Some(first) = self.operands.first() {
+            out.on = first.object.on.clone().filter(|_| self.kind.makes_section());
             out.units.clone_from(&first.object.units);
             let drawing = out.draw();
             drawing.projection = first.object.drawing.projection;
@@ -425,7 +424,7 @@ impl Feature {
         plan: &FacetPlan,
     ) -> Result<Vec<Similarity<T>>, NoBody> {
         match &self.kind {
-            FeatureKind::OnFace(face) => {
+            FeatureKind::OnFace { face, along } => {
                 let base = self.operand_body(1, &laid[1], plan, &[])?;
                 // Named as the operand itself names it.
                 let face = match face {
@@ -434,7 +433,8 @@ impl Feature {
                     }
                     extreme @ FaceChoice::Extreme { .. } => extreme.clone(),
                 };
-                Ok(vec![on_face(&base, &face)?])
+                let place = FacePlane::of(&base, &face).and_then(|p| p.place(&face, *along));
+                Ok(vec![place.map_err(NoBody::Treatment)?])
             }
             FeatureKind::Place(place) => Ok(vec![place.similarity(&|e| number(layout, e))?]),
             FeatureKind::Pattern { step, count } => {
@@ -471,7 +471,7 @@ impl Feature {
         let mut bodies = Vec::new();
         let mut empty = Vec::new();
         let used = match self.kind {
-            FeatureKind::OnFace(_) => 1,
+            FeatureKind::OnFace { .. } => 1,
             _ => made_of,
         };
         for (k, own) in laid.iter().enumerate().take(used) {
@@ -568,7 +568,9 @@ impl Feature {
                 let [Some(p), Some(q)] = ends else { return Err(NoBody::Unfinished) };
                 self.turned(section, [p, q], value(angle)?, plan.density())
             }
-            (FeatureKind::Place(_) | FeatureKind::OnFace(_), [body]) => Ok(body.placed(&images[0])),
+            (FeatureKind::Place(_) | FeatureKind::OnFace { .. }, [body]) => {
+                Ok(body.placed(&images[0]))
+            }
             (FeatureKind::Pattern { .. }, [body]) => repeated(body, &images),
             (FeatureKind::Blend { blend, edges }, [body]) => {
                 let size = match blend {
@@ -700,7 +702,7 @@ impl Feature {
                     b => combined([&a, &b?], *operation).map_err(NoBody::Combine),
                 }))
             }
-            FeatureKind::Place(_) | FeatureKind::OnFace(_) => {
+            FeatureKind::Place(_) | FeatureKind::OnFace { .. } => {
                 let scale = images[0].columns[0].norm();
                 Some(part(0, by / scale).map(|body| body.placed(&images[0])))
             }
@@ -763,39 +765,6 @@ pub(super) fn repeated<T: Real>(
     }
     let all: Vec<&SketchSolid<T>> = copies.iter().collect();
     united(&all).map_err(NoBody::Combine)
-}
-
-/// The move along an axis that brings the origin onto a plane face of a body.
-fn on_face<T: Real>(base: &SketchSolid<T>, face: &FaceChoice) -> Result<Similarity<T>, NoBody> {
-    let refuse = |text: String| {
-        let next = "name a plane face that is square to an axis; LIST FACES names them";
-        NoBody::Treatment(TreatmentFault::new(text, None, next))
-    };
-    let faces = base.chosen_faces(face).map_err(NoBody::Treatment)?;
-    let mut found: Option<(usize, T)> = None;
-    let size = base.vertices.iter().map(|v| v.at.re().norm()).fold(0.0, f64::max);
-    for f in faces {
-        let FaceForm::Plane { at, normal } = base.form(f) else {
-            return Err(refuse(format!("face {face} is round")));
-        };
-        // Also its derivatives: it stays square to the axis.
-        let zero = |x: T| (0..T::PARTS).all(|part| x.part(part).abs() <= SQUARE);
-        let square = |k: &usize| (0..3).all(|j| j == *k || zero(normal[j]));
-        let Some(k) = (0..3).find(square) else {
-            return Err(refuse(format!("face {face} is inclined")));
-        };
-        match &found {
-            Some((axis, level)) if *axis != k || (*level - at[k]).re().abs() > SQUARE * size => {
-                return Err(refuse(format!("face {face} is in several planes")));
-            }
-            Some(_) => {}
-            None => found = Some((k, at[k])),
-        }
-    }
-    let (k, level) = found.ok_or_else(|| refuse(format!("there is no face {face}")))?;
-    let mut shift = [T::zero(); 3];
-    shift[k] = level;
-    Ok(Similarity::moved(Vec3::from(shift)))
 }
 
 /// The value of a number of a feature.

@@ -20,6 +20,7 @@ pub mod curve;
 mod drill;
 mod edge_trace;
 pub(crate) mod edges;
+pub(crate) mod face_place;
 pub mod faces;
 mod facet_source;
 pub mod feature;

@@ -240,6 +240,10 @@ const CASES: &[(&str, &str)] = &[
         "SKETCH A 2D XY; RECTANGLE 4 4; EXTRUDE A 2; SKETCH D 2D XY",
         "CIRCLE DIAMETER 2 AT \"A.WIDTH9/2\" 0",
     ),
+    (
+        "SKETCH A 2D XY; RECTANGLE 4 4; EXTRUDE A 2; SKETCH D 2D XY ON A TOP Z; RECTANGLE 1 1",
+        "LOFT D A INTO L",
+    ),
     (DRILLED, "COPY D E; MOVE E 20 0 0; CUT P E INTO A"),
     (DRILLED, "COPY D F; MOVE F 20 0 0; CUT P F; RENAME P Q; RENAME F P"),
     (
