@@ -51,7 +51,7 @@ def order_of(points: Floats, closed: bool) -> list[Finding]:
     steps = np.linalg.norm(np.diff(points, axis=0), axis=1)
     if n < _FEWEST or not steps.any():
         return []
-    if _shuffled(points, steps):
+    if _shuffled(points):
         return [_order(0, f"points 1 to {n}: out of order? the line through them turns back")]
     ring = not closed and (points[0] == points[-1]).all()
     if ring and _smooth_seam(points):
@@ -68,14 +68,18 @@ def _order(index: int, text: str) -> Finding:
     return Finding("order", index, (0.0, 0.0, 0.0), text)
 
 
-def _shuffled(points: Floats, steps: Floats) -> bool:
-    turns = (np.diff(points, axis=0)[1:] * np.diff(points, axis=0)[:-1]).sum(axis=1) < 0
-    if turns.mean() < _TURNS_BACK:
+def _shuffled(points: Floats) -> bool:
+    """True if the points jump to and fro; of very many a sample tells, which jumps as they do."""
+    way = np.diff(points, axis=0)
+    if ((way > 0).all(axis=0) | (way < 0).all(axis=0)).any():
         return False
-    # A sample tells: all distances of very many points would not fit.
-    picked = np.linspace(0, len(points) - 1, min(len(points), 400)).astype(int)
-    apart = np.linalg.norm(points[picked, None] - points[None], axis=2)
+    own = points[np.linspace(0, len(points) - 1, min(len(points), 400)).astype(int)]
+    way = np.diff(own, axis=0)
+    if ((way[1:] * way[:-1]).sum(axis=1) < 0).mean() < _TURNS_BACK:
+        return False
+    apart = np.linalg.norm(own[:, None] - own[None], axis=2)
     apart[apart == 0] = np.inf
+    steps = np.linalg.norm(way, axis=1)
     return bool(np.median(steps) > _SHUFFLED * np.median(apart.min(axis=1)))
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import tracemalloc
 import zipfile
 
 import numpy as np
@@ -131,3 +132,20 @@ def test_what_is_no_text_is_refused_by_name(tmp_path, name, make, words):
     make(path)
     with pytest.raises(FairingError, match=words):
         read_points(path)
+
+
+def test_dense_noise_is_in_order_and_needs_little_memory():
+    """Readings nearer to each other than their noise is wide turn back at each point."""
+    n = 60_000
+    x = np.linspace(0, 10, n)
+    rng = np.random.default_rng(3)
+    points = np.column_stack([x, np.sin(x) + rng.uniform(-0.3, 0.3, n)])
+    slow = np.column_stack([np.cos(x / 3), np.sin(x / 3)]) + rng.uniform(-2e-3, 2e-3, (n, 2))
+    tracemalloc.start()
+    assert not order_of(points, False) and not order_of(slow, False)
+    assert "out of order" in order_of(points[rng.permutation(n)], False)[0].text
+    most = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    assert most < 100 * points.nbytes, most
+    found = moldloft.fair(points, 0.3, as_="fit", motion=(0, 1))
+    assert found.findings == () and found.spline.inflections() == 3

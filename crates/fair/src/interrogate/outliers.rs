@@ -133,6 +133,30 @@ const PRIOR: [f64; 2] = [4.0, 60.0];
 /// Degrees of freedom of the scale of a neighbourhood.
 const FREEDOM: f64 = (2 * SIDE - 4) as f64;
 
+/// Fraction of turns of more than 90 degrees from which on chords are lengths of noise.
+const TURNS_BACK: f64 = 0.25;
+
+/// Number of points from which on the scale of a file is that without any of its points.
+const MANY: usize = 1_000;
+
+/// How neighbours in a list follow each other.
+#[derive(Clone, Copy, Debug)]
+struct ListForm {
+    closed: bool,
+    /// True if their noise is larger than their spacing: their number is the parameter, knuckles are not
+    /// resolved, and all of an error counts.
+    dense: bool,
+}
+
+impl ListForm {
+    fn of(points: &[Vec3<f64>], closed: bool) -> Self {
+        let turn = |w: &&[Vec3<f64>]| (w[1] - w[0]).dot(w[2] - w[1]) < 0.0;
+        let back = points.windows(3).filter(turn).count() as f64;
+        let dense = points.len() > SHORT[1] && back > TURNS_BACK * points.len() as f64;
+        Self { closed, dense }
+    }
+}
+
 /// Prediction of a point from its neighbours.
 #[derive(Clone, Copy, Debug)]
 struct NeighbourFit {
@@ -231,16 +255,21 @@ fn window(i: usize, n: usize, side: usize, closed: bool) -> (Vec<usize>, usize) 
     ((low..=low + 2 * side).filter(|&j| j != i).collect(), i - low)
 }
 
-fn seen(points: &[Vec3<f64>], i: usize, side: usize, closed: bool) -> Option<NeighbourFit> {
-    let n = points.len();
+fn seen(points: &[Vec3<f64>], i: usize, side: usize, form: ListForm) -> Option<NeighbourFit> {
+    let (n, ListForm { closed, dense }) = (points.len(), form);
     let (near, place) = window(i, n, side, closed);
     let m = near.len();
     if m < 6 {
         return None;
     }
     let mut chord = vec![0.0];
-    for w in near.windows(2) {
-        chord.push(chord.last()? + (points[w[1]] - points[w[0]]).norm());
+    for (k, w) in near.windows(2).enumerate() {
+        let step = if dense {
+            if k + 1 == place { 2.0 } else { 1.0 }
+        } else {
+            (points[w[1]] - points[w[0]]).norm()
+        };
+        chord.push(chord.last()? + step);
     }
     let middle = 0.5 * chord[m - 1];
     if middle.is_nan() || middle <= 0.0 {
@@ -254,7 +283,8 @@ fn seen(points: &[Vec3<f64>], i: usize, side: usize, closed: bool) -> Option<Nei
     let inside = 0 < place && place < m;
     let (a, b) = (place.max(1) - 1, place.min(m - 1));
     let p = points[i];
-    let (da, db) = ((p - own[a]).norm(), (p - own[b]).norm());
+    let apart = |q: Vec3<f64>| if dense { 1.0 } else { (p - q).norm() };
+    let (da, db) = (apart(own[a]), apart(own[b]));
     let mut x = if place == 0 {
         t[0] - db / middle
     } else if place == m {
@@ -262,7 +292,7 @@ fn seen(points: &[Vec3<f64>], i: usize, side: usize, closed: bool) -> Option<Nei
     } else {
         t[a] + (t[b] - t[a]) * da / (da + db).max(f64::MIN_POSITIVE)
     };
-    for _ in 0..6 {
+    for _ in 0..if dense { 0 } else { 6 } {
         let [at, d, dd] = cubic(&c, x);
         let v = at - p;
         let plain = d.norm_sq();
@@ -272,7 +302,7 @@ fn seen(points: &[Vec3<f64>], i: usize, side: usize, closed: bool) -> Option<Nei
     }
     let across = |v: Vec3<f64>, d: Vec3<f64>| {
         let long = d.norm_sq();
-        if long > 0.0 { v - d * (v.dot(d) / long) } else { v }
+        if long > 0.0 && !dense { v - d * (v.dot(d) / long) } else { v }
     };
     let [at, d, _] = cubic(&c, x);
     let off = across(p - at, d);
@@ -305,8 +335,8 @@ fn seen(points: &[Vec3<f64>], i: usize, side: usize, closed: bool) -> Option<Nei
 
 /// True if the `CLOSE` nearest neighbours on either side confirm the error in size and direction;
 /// where a cubic does not follow the curve their error is much smaller.
-fn confirmed(points: &[Vec3<f64>], i: usize, closed: bool, wide: &NeighbourFit) -> bool {
-    seen(points, i, CLOSE, closed).is_some_and(|close| {
+fn confirmed(points: &[Vec3<f64>], i: usize, form: ListForm, wide: &NeighbourFit) -> bool {
+    seen(points, i, CLOSE, form).is_some_and(|close| {
         let share = CONFIRMS[usize::from(!close.central)];
         close.across.dot(wide.across) >= share * wide.across.norm_sq()
     })
@@ -367,8 +397,8 @@ fn threshold(count: usize, freedom: f64) -> f64 {
 }
 
 /// Predictions of all points from their neighbours.
-fn fits(points: &[Vec3<f64>], closed: bool) -> Vec<Option<NeighbourFit>> {
-    (0..points.len()).map(|i| seen(points, i, SIDE, closed)).collect()
+fn fits(points: &[Vec3<f64>], form: ListForm) -> Vec<Option<NeighbourFit>> {
+    (0..points.len()).map(|i| seen(points, i, SIDE, form)).collect()
 }
 
 /// Scale of a file, and its degrees of freedom for a neighbourhood.
@@ -387,6 +417,18 @@ impl FileScale {
         // The scale of few points is not known better than they allow.
         let most = (all.len() as f64 - 4.0).max(PRIOR[0]);
         Self { scale, weight: weight.min(most), count: all.len() }
+    }
+
+    /// The scale that the others have among themselves.
+    fn without(
+        self,
+        points: &[Vec3<f64>],
+        all: &[Option<NeighbourFit>],
+        at: usize,
+        form: ListForm,
+        floor: f64,
+    ) -> Self {
+        if all.len() > MANY { self } else { Self::of(&without(points, all, at, form), floor) }
     }
 
     /// A point set against its scale.
@@ -415,7 +457,7 @@ fn without(
     points: &[Vec3<f64>],
     all: &[Option<NeighbourFit>],
     at: usize,
-    closed: bool,
+    form: ListForm,
 ) -> Vec<Option<NeighbourFit>> {
     let n = points.len();
     let mut left = points.to_vec();
@@ -423,8 +465,8 @@ fn without(
     (0..n)
         .filter(|&i| i != at)
         .map(|i| {
-            if window(i, n, SIDE, closed).0.contains(&at) {
-                seen(&left, i - usize::from(i > at), SIDE, closed)
+            if window(i, n, SIDE, form.closed).0.contains(&at) {
+                seen(&left, i - usize::from(i > at), SIDE, form)
             } else {
                 all[i]
             }
@@ -436,26 +478,36 @@ fn without(
 ///
 /// One point is among the neighbours of ten, and of all in a short list: it is set against the scale
 /// that the others have among themselves.
-fn clearest(points: &[Vec3<f64>], closed: bool, floor: f64) -> Option<(usize, Judged)> {
+fn clearest(points: &[Vec3<f64>], form: ListForm, floor: f64) -> Option<(usize, Judged)> {
     let n = points.len();
-    let all = fits(points, closed);
+    let all = fits(points, form);
     let file = FileScale::of(&all, floor);
+    let judged = || (0..n).filter_map(|i| Some((i, all[i].filter(|s| s.judged)?)));
     let own = |s: &NeighbourFit| s.off / s.scale.max(floor).max(f64::MIN_POSITIVE);
-    let mut by_own: Vec<(usize, NeighbourFit)> =
-        (0..n).filter_map(|i| Some((i, all[i].filter(|s| s.judged)?))).collect();
-    let mut by_file = by_own.clone();
-    by_own.sort_by(|a, b| own(&b.1).total_cmp(&own(&a.1)));
-    by_file.sort_by(|a, b| file.judge(b.1).score.total_cmp(&file.judge(a.1).score));
-    by_own.truncate(CANDIDATES[0]);
-    by_own.extend(by_file.into_iter().take(CANDIDATES[1]));
-    by_own
+    let mut picked = largest(judged().map(|(i, s)| (i, own(&s))), CANDIDATES[0]);
+    picked.extend(largest(judged().map(|(i, s)| (i, file.judge(s).score)), CANDIDATES[1]));
+    let scale = |at: usize| file.without(points, &all, at, form, floor);
+    picked
         .into_iter()
-        .filter_map(|(at, seen_at)| {
-            let judged = FileScale::of(&without(points, &all, at, closed), floor).judge(seen_at);
-            let found = judged.score >= judged.least && confirmed(points, at, closed, &seen_at);
+        .filter_map(|at| {
+            let seen_at = all[at]?;
+            let judged = scale(at).judge(seen_at);
+            let found = judged.score >= judged.least && confirmed(points, at, form, &seen_at);
             found.then_some((at, judged))
         })
         .max_by(|a, b| a.1.score.total_cmp(&b.1.score))
+}
+
+/// The places of the largest of some numbers, in falling order; of equal ones the first come first.
+fn largest(all: impl Iterator<Item = (usize, f64)>, count: usize) -> Vec<usize> {
+    let mut all: Vec<(usize, f64)> = all.collect();
+    let falling = |a: &(usize, f64), b: &(usize, f64)| b.1.total_cmp(&a.1).then(a.0.cmp(&b.0));
+    if count < all.len() {
+        all.select_nth_unstable_by(count, falling);
+        all.truncate(count);
+    }
+    all.sort_by(falling);
+    all.into_iter().map(|(at, _)| at).collect()
 }
 
 /// Standard deviation of rounding to the common digits of all coordinates: half the step over √3.
@@ -502,13 +554,13 @@ fn pieces(n: usize, closed: bool, knuckles: &[DataFinding]) -> Vec<(Vec<usize>, 
 fn wrong_digits(
     points: &[Vec3<f64>],
     own: &mut Vec<usize>,
-    round: bool,
+    form: ListForm,
     floor: f64,
 ) -> Vec<DataFinding> {
     let mut out = Vec::new();
     while own.len() >= FEWEST && out.len() < MOST {
         let list: Vec<Vec3<f64>> = own.iter().map(|&i| points[i]).collect();
-        let found = clearest(&list, round, floor);
+        let found = clearest(&list, form, floor);
         let Some((at, Judged { seen, score, least, deviation })) = found else { break };
         let (index, expected) = (own.remove(at), seen.expected);
         let least = least * deviation;
@@ -539,10 +591,12 @@ fn ordered_findings(points: &[Vec3<f64>], closed: bool) -> Vec<DataFinding> {
     }
     let size = points.iter().map(|p| (*p - points[0]).norm()).fold(0.0, f64::max);
     let floor = digit_scale(points).max(1e-12 * size);
-    let knuckles = knuckles(points, closed, floor);
+    let form = ListForm::of(points, closed);
+    let knuckles = knuckles(points, form, floor);
     let mut out = Vec::new();
     for (mut own, round) in pieces(n, closed, &knuckles) {
-        out.extend(wrong_digits(points, &mut own, round, floor));
+        let form = ListForm { closed: round, ..form };
+        out.extend(wrong_digits(points, &mut own, form, floor));
     }
     out.sort_by(|a, b| match (a, b) {
         (DataFinding::WrongDigit { score: a, .. }, DataFinding::WrongDigit { score: b, .. }) => {
@@ -576,18 +630,21 @@ fn of_each(points: &[Vec3<f64>], closed: bool, what: impl Fn(Judged) -> f64) -> 
     }
     let size = points.iter().map(|p| (*p - points[0]).norm()).fold(0.0, f64::max);
     let floor = digit_scale(points).max(1e-12 * size);
-    for (mut own, round) in pieces(n, closed, &knuckles(points, closed, floor)) {
+    let whole_form = ListForm::of(points, closed);
+    for (mut own, round) in pieces(n, closed, &knuckles(points, whole_form, floor)) {
+        let form = ListForm { closed: round, ..whole_form };
         if own.len() < FEWEST {
             continue;
         }
         let whole = own.clone();
         let wrong: Vec<usize> =
-            wrong_digits(points, &mut own, round, floor).iter().map(DataFinding::index).collect();
+            wrong_digits(points, &mut own, form, floor).iter().map(DataFinding::index).collect();
         let list: Vec<Vec3<f64>> = own.iter().map(|&i| points[i]).collect();
-        let all = fits(&list, round);
+        let all = fits(&list, form);
+        let file = FileScale::of(&all, floor);
         for (at, &i) in own.iter().enumerate() {
             if let Some(seen) = all[at].filter(|s| s.judged) {
-                let scale = FileScale::of(&without(&list, &all, at, round), floor);
+                let scale = file.without(&list, &all, at, form, floor);
                 out[i] = out[i].min(what(scale.judge(seen)));
             }
         }
@@ -596,8 +653,8 @@ fn of_each(points: &[Vec3<f64>], closed: bool, what: impl Fn(Judged) -> f64) -> 
                 whole.iter().copied().filter(|k| *k == i || !wrong.contains(k)).collect();
             let list: Vec<Vec3<f64>> = with.iter().map(|&k| points[k]).collect();
             let at = with.iter().position(|&k| k == i).unwrap_or(0);
-            if let Some(own) = seen(&list, at, SIDE, round).filter(|s| s.judged) {
-                out[i] = what(FileScale::of(&all, floor).judge(own));
+            if let Some(own) = seen(&list, at, SIDE, form).filter(|s| s.judged) {
+                out[i] = what(file.judge(own));
             }
         }
     }
@@ -680,7 +737,8 @@ impl Hinge {
 
     /// True if it is the wrong digit of the point or a neighbour: leaving that out cures it. A wrong
     /// digit turns the polygon half as much beside it, at any spacing.
-    fn is_digit(&self, points: &[Vec3<f64>], closed: bool, file: f64) -> bool {
+    fn is_digit(&self, points: &[Vec3<f64>], form: ListForm, file: f64) -> bool {
+        let closed = form.closed;
         let n = points.len();
         let cures = |gone: usize| {
             if !closed && (gone < 2 || gone + 2 >= n) {
@@ -689,7 +747,7 @@ impl Hinge {
             let left: Vec<Vec3<f64>> = (0..n).filter(|&j| j != gone).map(|j| points[j]).collect();
             let m = left.len();
             let near = (0..8).map(|k| (gone + m + k - 4) % m);
-            let seen = near.filter_map(|j| seen(&left, j, SIDE, closed)).filter(|s| s.judged);
+            let seen = near.filter_map(|j| seen(&left, j, SIDE, form)).filter(|s| s.judged);
             // Beside a break the neighbours' own scale is large: the file's decides.
             let off = seen.map(|s| s.off / shrunk(file, s.scale, 6.0).min(3.0 * file));
             off.fold(0.0, f64::max) < CURED
@@ -705,8 +763,11 @@ fn shrunk(file: f64, own: f64, freedom: f64) -> f64 {
 }
 
 /// Points at which a cubic through the neighbours wants a hinge.
-fn knuckles(points: &[Vec3<f64>], closed: bool, floor: f64) -> Vec<DataFinding> {
-    let n = points.len();
+fn knuckles(points: &[Vec3<f64>], form: ListForm, floor: f64) -> Vec<DataFinding> {
+    let (n, closed) = (points.len(), form.closed);
+    if form.dense {
+        return Vec::new();
+    }
     if !closed && n <= SHORT[1] {
         return short_knuckles(points, floor);
     }
@@ -719,7 +780,7 @@ fn knuckles(points: &[Vec3<f64>], closed: bool, floor: f64) -> Vec<DataFinding> 
     let finding = |h: &Hinge| {
         let score = h.size / (shrunk(file, h.scale, 3.0) * h.factor);
         let smooth = score <= KNUCKLE_SCORE || h.sharpness <= 2.0 || h.is_nose();
-        (!smooth && !h.is_digit(points, closed, file)).then_some(DataFinding::Knuckle {
+        (!smooth && !h.is_digit(points, form, file)).then_some(DataFinding::Knuckle {
             index: h.index,
             angle: h.angle,
             score,

@@ -259,3 +259,24 @@ fn what_is_detectable_is_found() {
     assert!(100 * early <= 3 * asked, "{early} of {asked}");
     assert!(100 * same >= 95 * asked, "{same} of {asked}");
 }
+
+/// Readings of a signal that are nearer to each other than their noise is wide: its turns are no corners, and a
+/// spike is found.
+#[test]
+fn dense_noise_is_no_finding() {
+    let n = 4_000;
+    for (noise, seed) in [(0.01, 1), (0.05, 2), (0.3, 3)] {
+        let mut g = Lcg::new(seed);
+        let mut points: Vec<Vec3<f64>> = (0..n)
+            .map(|i| 10.0 * i as f64 / (n - 1) as f64)
+            .map(|x| Vec3::of(x, 2.0 * (0.7 * x).sin() + noise * gaussian(&mut g), 0.0))
+            .collect();
+        assert_eq!(data_findings(&points, false), [], "{noise}");
+        points[1_234].y += 12.0 * noise;
+        let found = data_findings(&points, false);
+        assert!(
+            matches!(found[..], [DataFinding::WrongDigit { index: 1_234, .. }]),
+            "{noise}: {found:?}"
+        );
+    }
+}
