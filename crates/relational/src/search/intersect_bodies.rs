@@ -62,7 +62,7 @@ impl<T: Real> Build<T> for BodyIntersection<T> {
         let middle = || bodies[0][0].jet(T::from(0.5), T::from(0.5), Order::Zero).p.re();
         let by_point = self.near.is_some();
         let near = self.near.map_or_else(middle, |point| point.xyz.re());
-        let away = |chain: &Chain| {
+        let away = |chain: &CutChain| {
             let stations =
                 chain.links.iter().flat_map(|link| &segments[link.segment].branch.stations);
             stations.map(|s| s.x.distance(near)).fold(f64::INFINITY, f64::min)
@@ -77,7 +77,7 @@ impl<T: Real> Build<T> for BodyIntersection<T> {
             return Err(apart(&crossing, [0.5; 2], "other body").in_field(Self::FACES2));
         };
         let report = report(&segments, &chains, chosen, by_point);
-        let made = Joined::of(&bodies, &segments, &chains[chosen], Self::FIELDS, context)?;
+        let made = ChainedCuts::of(&bodies, &segments, &chains[chosen], Self::FIELDS, context)?;
         let mut curve = CurveRef::new(made.curve(None, made.all()), context.nesting);
         curve.snakes = made.snakes(&bodies, context).into();
         Ok(Value::Curve(curve.with_found(report)))
@@ -85,13 +85,13 @@ impl<T: Real> Build<T> for BodyIntersection<T> {
 }
 
 /// An intersection of a face of one body with one of the other.
-struct Segment {
+struct FaceCut {
     /// The numbers of the faces.
     faces: [usize; 2],
     branch: Branch,
 }
 
-impl Segment {
+impl FaceCut {
     fn end(&self, k: usize) -> Vec3 {
         let stations = &self.branch.stations;
         stations[if k == 0 { 0 } else { stations.len() - 1 }].x
@@ -112,7 +112,7 @@ fn crossing<'a, T: Real>(
 fn segments<T: Real>(
     bodies: &[Vec<SurfaceRef<T>>; 2],
     fields: IntersectionFields,
-) -> Result<Vec<Segment>, CallError> {
+) -> Result<Vec<FaceCut>, CallError> {
     let mut segments = Vec::new();
     for (i, face) in bodies[0].iter().enumerate() {
         let first = PlainSurface(&**face);
@@ -134,7 +134,7 @@ fn segments<T: Real>(
                 .in_field(fields.target));
             }
             segments
-                .extend(found.branches.into_iter().map(|branch| Segment { faces: [i, j], branch }));
+                .extend(found.branches.into_iter().map(|branch| FaceCut { faces: [i, j], branch }));
         }
     }
     Ok(segments)
@@ -143,7 +143,7 @@ fn segments<T: Real>(
 /// Adds the segments, shorter than those that a search claims to find, that continue others across an edge of a face.
 fn continued<T: Real>(
     bodies: &[Vec<SurfaceRef<T>>; 2],
-    segments: &mut Vec<Segment>,
+    segments: &mut Vec<FaceCut>,
     tolerance: f64,
 ) -> Result<(), CallError> {
     let mut at = 0;
@@ -159,7 +159,7 @@ fn continued<T: Real>(
             }
             let side = unknown / 2;
             let own = segments[at].faces;
-            let beside: Vec<Option<Segment>> = (0..bodies[side].len())
+            let beside: Vec<Option<FaceCut>> = (0..bodies[side].len())
                 .filter(|number| *number != own[side])
                 .filter_map(|number| {
                     let mut faces = own;
@@ -195,7 +195,7 @@ fn through<T: Real>(
     faces: [usize; 2],
     x: Vec3,
     tolerance: f64,
-) -> Option<Option<Segment>> {
+) -> Option<Option<FaceCut>> {
     let first = PlainSurface(&*bodies[0][faces[0]]);
     let second = Second::Surface(bodies[1][faces[1]].clone());
     let plain = second.plain();
@@ -209,25 +209,25 @@ fn through<T: Real>(
     }
     let found = crossing.near([u, v], Some([p, r])).and_then(|q| crossing.branch(q));
     let found = found.filter(|branch| branch.stations.len() > 1);
-    let found = found.map(|branch| Segment { faces, branch });
+    let found = found.map(|branch| FaceCut { faces, branch });
     Some(found.filter(|s| [0, 1].iter().any(|&k| s.end(k).distance(x) <= tolerance)))
 }
 
 /// A segment in a chain, forwards or backwards.
 #[derive(Clone, Copy)]
-struct Link {
+struct CutLink {
     segment: usize,
     backwards: bool,
 }
 
 /// Segments end to end.
-struct Chain {
-    links: Vec<Link>,
+struct CutChain {
+    links: Vec<CutLink>,
     closed: bool,
 }
 
 /// The chains of segments whose ends are one point within `tolerance`.
-fn chains(segments: &[Segment], tolerance: f64) -> Result<Vec<Chain>, CallError> {
+fn chains(segments: &[FaceCut], tolerance: f64) -> Result<Vec<CutChain>, CallError> {
     // Ends 2 k and 2 k + 1 are those of segment k.
     let ends: Vec<Vec3> = segments.iter().flat_map(|s| [s.end(0), s.end(1)]).collect();
     let mut next = vec![None; ends.len()];
@@ -265,25 +265,30 @@ fn chains(segments: &[Segment], tolerance: f64) -> Result<Vec<Chain>, CallError>
             let mut at = next[from];
             while let Some(enter) = at.filter(|e| !used[e / 2]) {
                 used[enter / 2] = true;
-                links.push(Link { segment: enter / 2, backwards: enter % 2 == 1 });
+                links.push(CutLink { segment: enter / 2, backwards: enter % 2 == 1 });
                 at = next[enter ^ 1];
             }
             (links, at.is_some())
         };
         used[start] = true;
-        let first = Link { segment: start, backwards: false };
+        let first = CutLink { segment: start, backwards: false };
         let (ahead, returned) = follow(2 * start + 1, &mut used);
         let (behind, _) = follow(2 * start, &mut used);
-        let before = behind.iter().rev().map(|l| Link { backwards: !l.backwards, ..*l });
+        let before = behind.iter().rev().map(|l| CutLink { backwards: !l.backwards, ..*l });
         let links = before.chain([first]).chain(ahead).collect();
-        all.push(Chain { links, closed: returned || segments[start].branch.closed() });
+        all.push(CutChain { links, closed: returned || segments[start].branch.closed() });
     }
     Ok(all)
 }
 
 /// The report about the chosen one of all chains, with positions in space.
-fn report(segments: &[Segment], chains: &[Chain], chosen: usize, by_point: bool) -> SearchReport {
-    let place = |chain: &Chain| {
+fn report(
+    segments: &[FaceCut],
+    chains: &[CutChain],
+    chosen: usize,
+    by_point: bool,
+) -> SearchReport {
+    let place = |chain: &CutChain| {
         let link = chain.links[chain.links.len() / 2];
         let stations = &segments[link.segment].branch.stations;
         stations[stations.len() / 2].x
@@ -310,7 +315,7 @@ fn report(segments: &[Segment], chains: &[Chain], chosen: usize, by_point: bool)
 }
 
 /// The intersections along a chain, and the fractions of the length at their ends.
-struct Joined<T: Real> {
+struct ChainedCuts<T: Real> {
     views: Vec<CutView<T>>,
     faces: Vec<[usize; 2]>,
     ends: Vec<T>,
@@ -321,11 +326,11 @@ struct Joined<T: Real> {
 /// Pieces of a chain: the first, and how many; beyond the last one follows the first.
 type Run = (usize, usize);
 
-impl<T: Real> Joined<T> {
+impl<T: Real> ChainedCuts<T> {
     fn of(
         bodies: &[Vec<SurfaceRef<T>>; 2],
-        segments: &[Segment],
-        chain: &Chain,
+        segments: &[FaceCut],
+        chain: &CutChain,
         fields: IntersectionFields,
         context: &Context,
     ) -> Result<Self, CallError> {
