@@ -79,8 +79,7 @@ impl CentreSearch<'_> {
 
     /// True for the data that keep the curve out.
     fn outer(&self, control: &[Vec3<f64>]) -> Vec<bool> {
-        let all: Vec<f64> =
-            (0..self.points.len()).map(|k| self.off(control, k).norm()).collect();
+        let all: Vec<f64> = (0..self.points.len()).map(|k| self.off(control, k).norm()).collect();
         let largest = all.iter().copied().fold(0.0, f64::max);
         all.iter().map(|&r| r > OUTER * largest).collect()
     }
