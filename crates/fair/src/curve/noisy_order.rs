@@ -1,13 +1,14 @@
 //! Chord lengths of points that noise has put in the wrong order.
 //!
-//! Where points are nearer to each other than their noise, steps go back along the curve. A chord counts them as
-//! steps forward, which a straight line cannot follow. There positions along the local direction are the
-//! parameters, with the least change that makes them rise: the mean of the largest before and the least after
-//! (the isotonic regression of the least largest change).
+//! Where points are nearer to each other than their noise, steps go back along the curve. A chord
+//! counts them as steps forward, which a straight line cannot follow. There positions along the
+//! local direction are the parameters, with the least change that makes them rise: the mean of the
+//! largest before and the least after (the isotonic regression of the least largest change).
 
 use moldloft_num::Vec3;
 
-/// The distance, in sums of the tolerances of a step's two points, within which others decide its direction.
+/// The distance, in sums of the tolerances of a step's two points, within which others decide its
+/// direction.
 const REACH: f64 = 8.0;
 
 /// Ratio of a step's part along the local direction to its length below which it is aside.
@@ -16,8 +17,8 @@ const SIDEWAYS: f64 = 0.7;
 /// Fraction of the length within reach that is aside from which on positions are used entirely.
 const ASIDE: f64 = 0.002;
 
-/// Ratio to the tolerances at which a step back, and the distance of points from a line, cease to be noise: 1 to
-/// this.
+/// Ratio to the tolerances at which a step back, and the distance of points from a line, cease to
+/// be noise: 1 to this.
 const BEYOND: f64 = 1.5;
 
 /// A step's least length, in chords.
@@ -31,7 +32,8 @@ pub(super) struct NoisyOrder {
     pub moved: f64,
 }
 
-/// Positions of open points with steps back or aside within their tolerances; `None` if there are none.
+/// Positions of open points with steps back or aside within their tolerances; `None` if there are
+/// none.
 pub(super) fn in_noisy_order(points: &[Vec3<f64>], radii: &[f64]) -> Option<NoisyOrder> {
     let steps = points.len().checked_sub(1)?;
     let chords: Vec<Vec3<f64>> = points.windows(2).map(|w| w[1] - w[0]).collect();
@@ -113,7 +115,8 @@ fn across(points: &[Vec3<f64>], way: Vec3<f64>, near: &[(usize, f64)]) -> f64 {
     sum.sqrt()
 }
 
-/// The steps from each to each of which all are near step `k`, with weights from 1 for its own to 0.
+/// The steps from each to each of which all are near step `k`, with weights from 1 for its own to
+/// 0.
 fn nearby(points: &[Vec3<f64>], room: Option<f64>, k: usize) -> Vec<(usize, f64)> {
     let mut out = vec![(k, 1.0)];
     let Some(room) = room.filter(|&r| r > 0.0) else { return out };
