@@ -24,6 +24,7 @@ pub(crate) mod moving;
 pub(crate) mod multilevel;
 pub(crate) mod near;
 mod nearest_fairest;
+mod noisy_order;
 mod refined;
 mod refuted;
 pub(crate) mod request;

@@ -3,10 +3,12 @@
 use crate::curve::data::{Data, DataFit, DataOptions, fair_data, merged};
 use crate::curve::data_moved::{DataNumbers, MovingFit, fair_data_under};
 use crate::curve::demand::Demand;
-use crate::curve::fit::{ParameterSpacing, parameters_across};
+use crate::curve::exact::is_exact;
+use crate::curve::fit::{ParameterSpacing, parameters_across, released};
 use crate::curve::job::EndContinuity;
 use crate::curve::near::{TurnedFrom, fair_turned};
-use crate::curve::thinning::thinned;
+use crate::curve::noisy_order::in_noisy_order;
+use crate::curve::thinning::{MANY_DATA, thinned};
 use crate::curve::turning::{curvature_parameters, drafted_parameters, near_budget};
 use crate::interrogate::report::{FairingReport, report_of};
 use crate::optimum::goal::Goal;
@@ -108,6 +110,9 @@ impl<T: Real> NearCurve<T> {
 const INTERVAL_PARTS: [usize; 3] = [1, 2, 4];
 
 const MERGED: &str = "no derivatives are available for curves through coincident points";
+
+const NOISY: &str =
+    "no derivatives are available for a curve along which noise reverses the order of points";
 
 const GATED: &str = "no derivatives are available for a curve from which inflections were \
 removed, or with conditions against inflections: allow them (bends = 1)";
@@ -270,9 +275,25 @@ impl<T: Real> CurveRequest<T> {
             None
         };
         let turning = turning && thin.is_none();
-        let mut at = match (&self.at, self.spacing) {
-            (Some(at), _) => at.clone(),
-            (None, spacing) => {
+        let automatic = !self.closed
+            && self.at.is_none()
+            && self.spacing == PointSpacing::Auto
+            && self.motion == Motion::Ball
+            && points.len() < MANY_DATA
+            && !released(&plain, &limit.radii).contains(&true);
+        let noisy = automatic.then(|| in_noisy_order(&plain, &limit.radii)).flatten();
+        let noisy = noisy.filter(|_| !is_exact(&plain, &self.breaks, false));
+        if noisy.is_some() && !still {
+            return Err(FairError::NoDerivative(NOISY));
+        }
+        let moved = noisy.as_ref().map_or(0.0, |noisy| noisy.moved);
+        let mut at = match (&self.at, self.spacing, noisy) {
+            (Some(at), ..) => at.clone(),
+            (_, _, Some(noisy)) => {
+                let total = noisy.at[points.len() - 1];
+                noisy.at.into_iter().map(|t| T::from(t / total)).collect()
+            }
+            (None, spacing, None) => {
                 let spacing = match spacing {
                     PointSpacing::Given(spacing) => spacing,
                     PointSpacing::Auto | PointSpacing::Curvature => ParameterSpacing::Chord,
@@ -301,6 +322,11 @@ impl<T: Real> CurveRequest<T> {
             };
             data.layout = laid(&at)?;
         }
+        // What parameters in order cannot absorb of the noise along the curve counts as squares.
+        let goal = match self.goal {
+            Goal::Near(b) => Goal::Near(b + 3.0 * moved / points.len() as f64),
+            goal => goal,
+        };
         let numbers = DataNumbers { points, tolerances, at: &at, demands: &self.conditions };
         let lengths = lengths.as_ref().map(|data| (data, &by_length[..]));
         let own_at = reals(&at);
@@ -315,7 +341,7 @@ impl<T: Real> CurveRequest<T> {
             }
             let (own, shape) = own.shaped(&self.shape)?;
             let plane = shape.plane;
-            match self.shaped(own, shape, (measure, still), numbers, lengths) {
+            match self.shaped(own, shape, (measure, goal, still), numbers, lengths) {
                 Ok((data, made, fit)) => return Ok(NearCurve { data, of, made, fit, measure }),
                 Err(error @ (FairError::Shape { .. } | FairError::Shapeless { .. })) => {
                     if let Some(certain) = data.refuted(plane, &self.shape) {
@@ -343,11 +369,11 @@ impl<T: Real> CurveRequest<T> {
         &self,
         data: Data,
         shape: ShapeConstraints,
-        (measure, still): (Measure, bool),
+        (measure, goal, still): (Measure, Goal, bool),
         numbers: DataNumbers<'_, T>,
         lengths: Option<(&Data, &[f64])>,
     ) -> Result<(Data, MovingFit<T>, DataFit), FairError> {
-        let mut options = DataOptions::of(measure, self.goal);
+        let mut options = DataOptions::of(measure, goal);
         // Exact derivatives need to know which limits are reached; signs are not that exact.
         let least = if shape.is_empty() { ACCURACY } else { options.accuracy };
         options.accuracy = self.accuracy.unwrap_or(least);
