@@ -40,6 +40,9 @@ _AFTER_VALUE = {"REVERSED", "FORWARD", "ONLY"}
 _PLAIN = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)(e[-+]?\d+)?", re.IGNORECASE)
 _NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)(e[-+]?\d+)?\s*[a-z]*", re.IGNORECASE)
 
+#: A dimension that ACCEPT ALL has taken, and its points.
+_TAKEN = re.compile(r"(E\d+) [A-Z] (\d+) TO (\d+) = ")
+
 #: Commands in the next step that a reply names.
 _FIX = re.compile(r"\b(?:WELD|TYPE|ALIGN|DELETE) [A-Z0-9 ]*[A-Z0-9]")
 
@@ -371,12 +374,12 @@ class Board:
             out.update(self._object_facts(self._data()))
             out["marks"] = [_mark(m) for m in session.marks(name, None)]
             given = {m["name"] for m in out["marks"]}
-            session.run_line("ACCEPT ALL")
+            taken = self._taken()
             labels, places = session.points(name)
             guess = dict(zip(labels.tolist(), places.tolist(), strict=True))
             for p in out["points"]:
                 p[3] = [x if math.isfinite(x) else None for x in guess.get(p[0], [math.nan] * 3)]
-            out["next"] += [m for m in self._marks(self._data(), given) if "q" in m]
+            out["next"] += [m for m in self._marks(taken, given) if "q" in m]
 
         self._aside(look)
         return out
@@ -519,7 +522,7 @@ class Board:
             given = {m[0] for m in session.marks(name, None)}
             out["exact"] = not any(data["missing"].values())
             out["made"] = self._made(data)
-            session.run_line("ACCEPT ALL")
+            taken = self._taken()
             if not out["made"]:
                 for reply in map(Reply.from_row, session.run_line("GENERATE FACES")):
                     if reply.is_error:
@@ -527,7 +530,7 @@ class Board:
             data = self._data()
             out.update({"volume": data["volume"], "area": data["area"]})
             if trial is None:
-                out["handles"] = self._handles(data, given)
+                out["handles"] = self._handles(data, taken, given)
             if not self._made(data):
                 labels, places = session.points(name)
                 ends = [(ln["points"][0], ln["points"][1]) for ln in data["lines"]]
@@ -547,17 +550,24 @@ class Board:
         self._aside(look)
         return out
 
-    def _marks(self, data: dict[str, Any], given: set[str]) -> list[dict[str, Any]]:
+    def _taken(self) -> dict[str, tuple[int, int]]:
+        """Take all missing dimensions from the picture; the points that each is between."""
+        replies = map(Reply.from_row, self._session.run_line("ACCEPT ALL"))
+        found = (m for r in replies if not r.is_error for m in _TAKEN.finditer(r.text))
+        return {m[1]: (int(m[2]), int(m[3])) for m in found}
+
+    def _marks(self, taken: dict[str, tuple[int, int]], given: set[str]) -> list[dict[str, Any]]:
         """The dimensions of the object; those not given before with ``p`` and ``q``."""
-        measured = {d["name"]: d["measures"].split() for d in data["dimensions"]}
         marks = [_mark(m) for m in self._session.marks(str(self._object), None)]
         for mark in marks:
-            words = measured.get(mark["name"], [])
-            if mark["name"] not in given and len(words) == 4:
-                mark |= {"p": int(words[1]), "q": int(words[3])}
+            ends = taken.get(mark["name"])
+            if mark["name"] not in given and ends is not None:
+                mark |= {"p": ends[0], "q": ends[1]}
         return marks
 
-    def _handles(self, data: dict[str, Any], given: set[str]) -> list[dict[str, Any]]:
+    def _handles(
+        self, data: dict[str, Any], taken: dict[str, tuple[int, int]], given: set[str]
+    ) -> list[dict[str, Any]]:
         """The arrows of the object, whose missing dimensions have the values of the picture."""
         name = str(self._object)
         if not data["lines"]:
@@ -566,7 +576,7 @@ class Board:
         facts = self._object_facts(data)
         labels, places = self._session.points(name)
         at = dict(zip(labels.tolist(), places.tolist(), strict=True))
-        marks = self._marks(data, given)
+        marks = self._marks(taken, given)
         return drawn_handles(own, data, facts["section"], facts["planes"], at, marks)
 
     def pointer(self, request: dict[str, Any]) -> dict[str, Any]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import signal
+import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
@@ -490,3 +491,94 @@ def test_a_curve_is_picked_in_the_picture(desk: Callable[..., DeskHand]) -> None
     d.page.get_by_role("button", name="Fair on the desk").click()
     d.until(lambda: d.look()["session"], 120)
     assert d.look()["facts"]["title"] == "rail"
+
+
+def test_a_point_of_an_object_is_dragged_and_applied(desk: Callable[..., DeskHand]) -> None:
+    rows = [(0, 0), (1, 0.1), (2, 0.5), (3, 1.1), (4, 1.5), (5, 1.7), (6, 1.75)]
+    points = "".join(f"AbsPoint P{k}({x}, {y}, 0);\n" for k, (x, y) in enumerate(rows))
+    text = points + "FairCurve keel({" + ", ".join(f"P{k}" for k in range(7)) + "}, 0.001);\n"
+    d = desk(text)
+    d.page.locator(".desk-start .picks").get_by_text("keel").click()
+    d.until(lambda: d.look()["session"])
+    before = d.settle()
+    steps = d.hand("steps().done")
+    comb = d.page.locator(".desk .comb.after").first
+    drawn = {comb.get_attribute("d")}
+    x, y = d.at(4)
+    d.page.mouse.move(x, y)
+    d.page.mouse.down()
+    # The comb follows each stop of the pointer, and nothing is written before the button is up.
+    for dy in (-12, -24, -36):
+        d.page.mouse.move(x, y + dy)
+        d.until(lambda: comb.get_attribute("d") not in drawn)
+        drawn.add(comb.get_attribute("d"))
+        assert d.look()["log"] == [] and d.hand("steps().done") == steps
+    d.page.mouse.up()
+    after = d.settle()
+    [command] = after["log"]
+    assert d.hand("steps().done") == [*steps, f"Desk: {command}"]
+    shift = np.array(after["facts"]["detail"]["data"]) - before["facts"]["detail"]["data"]
+    assert shift[3, 1] * after["scale"] == pytest.approx(36, abs=1.5)
+    assert not shift[[0, 1, 2, 4, 5, 6]].any()
+    agrees(d)
+    # Applied, the text has it; each of the two is one step back.
+    d.page.get_by_role("button", name="Apply").click()
+    d.settle()
+    assert d.text().startswith(text) and "FairCurve keel_faired(" in d.text()
+    model = moldloft.loads(d.text())
+    curve = np.asarray(model["keel_faired"](np.linspace(0, 1, 2001)))
+    place = np.append(np.array(rows[3]) + shift[3, :2], 0)
+    assert np.linalg.norm(curve - place, axis=1).min() <= 1.01 * after["facts"]["limit"] + 1e-3
+    d.key("Control+z")
+    d.until(lambda: d.text() == text)
+    d.key("Control+z")
+    assert d.settle()["log"] == [] and d.look()["facts"]["list"] == before["facts"]["list"]
+    assert not d.faults
+
+
+def scanned() -> tuple[np.ndarray, np.ndarray]:
+    """A half section from keel to deck as a scanner reads it, with a chine; and what it is."""
+    t = np.linspace(0, 1, 25)
+    bottom = np.column_stack([1.6 * t, 0.25 * t + 0.2 * t**2])
+    side = np.column_stack([1.6 + 0.9 * t - 0.35 * t**2, 0.45 + 1.3 * t])
+    exact = np.vstack([bottom, side[1:]])
+    read = exact + np.random.default_rng(4).normal(0, 0.002, exact.shape)
+    read[33] += (0.08, -0.02)
+    return read, exact
+
+
+def test_a_scanned_section_is_faired_within_a_minute(desk: Callable[..., DeskHand]) -> None:
+    read, exact = scanned()
+    begin = time.monotonic()
+    d = desk()
+    state = d.table("section.csv", csv(read))
+    rough = state["facts"]["list"][0]["inflections"][1]
+    # The wrong reading is accepted as it is meant, the chine marked, the tolerance slid.
+    row = d.page.locator(".desk-suspects [data-point='33']")
+    row.get_by_role("button", name="Accept").click()
+    d.settle()
+    d.tool("Knuckle")
+    d.click(25)
+    d.key("v")
+    state = d.slide(0.6)
+    assert state["log"][:2] == ["accept 34", "knuckle 25"]
+    d.page.get_by_role("button", name="Apply").click()
+    d.settle()
+    text = d.text()
+    assert time.monotonic() - begin < 60
+    # Fair, certified, and within the tolerance of what was scanned: nearer to the truth than it.
+    line = state["facts"]["list"][0]
+    assert line["kept"] and line["inflections"][1] <= 1 < rough, (line, rough)
+    assert d.page.locator(".badge.certified").count() == 1
+    made = moldloft.loads(text)["section"]
+    curve = np.asarray(made(np.linspace(0, 1, 4001)))[:, :2]
+
+    def off(points: np.ndarray) -> np.ndarray:
+        return np.array([np.hypot(*(curve - p).T).min() for p in points])
+
+    limit = state["facts"]["limit"]
+    good = np.arange(len(read)) != 33
+    assert off(read[good]).max() < 1.01 * limit + 1e-3
+    assert off(exact).max() < 0.006 and off(exact).mean() < 0.002
+    agrees(d)
+    assert not d.faults

@@ -8,11 +8,12 @@ use super::no_body::no_body;
 use super::session::{CommandReply, DrawingCache, SketchSession};
 use super::subject::{ReplySubject, Suggestion};
 use super::{CommandError, words::CommandTokenKind};
+use crate::dimension::solver::PageScale;
 use crate::solid::feature::NoBody;
 use crate::solid::validity::SolidDefect;
 use crate::{
-    Align, CoordinateAxis, DOUBTFUL, DimensionLayout, DimensionRole, MeasuredQuantity, Planes,
-    Projection, SketchObject, TypeFault, chain, chain_text,
+    Align, CoordinateAxis, DOUBTFUL, Dimension, DimensionLayout, DimensionRole, MeasuredQuantity,
+    Planes, Projection, SketchObject, TypeFault, chain, chain_text,
 };
 use moldloft_diag::Severity;
 use moldloft_syntax::number::plain;
@@ -893,22 +894,78 @@ pub(super) fn suggestions<'a>(
     let planes = &view.planes;
     let estimate = if object.drawing.exact { None } else { view.estimate() };
     let scale = estimate.map(|e| crate::scale(object, planes, layout, e));
+    let known = known_planes(layout);
     let one = move |loose: &crate::Loose| {
         if object.drawing.exact {
             return as_drawn(object, planes, layout, loose);
         }
-        let (axis, own) = (loose.axis, loose.planes[0]);
-        let (e, scale) = (estimate?, scale?);
-        let known = (0..planes.counts()[axis.index()])
-            .filter(|&k| layout.coordinates[axis.index()][k].is_some());
-        let gap = |k: usize| (e.plane(axis, own) - e.plane(axis, k)) * scale;
-        let k = known.min_by(|&a, &b| gap(a).abs().total_cmp(&gap(b).abs()))?;
-        let (p, q) = (*planes.members(axis, k).first()?, *planes.members(axis, own).first()?);
-        let (p, q) = if gap(k) < 0.0 { (q, p) } else { (p, q) };
-        let open = !e.determines(axis, k, own);
-        Some(Suggestion { axis, p, q, value: rounded(gap(k).abs()), open })
+        as_estimated(planes, estimate?, scale?, &known, loose)
     };
     layout.loose.iter().map(one)
+}
+
+/// By axis, the planes with a coordinate.
+fn known_planes(layout: &DimensionLayout<f64>) -> [Vec<bool>; 3] {
+    layout.coordinates.each_ref().map(|c| c.iter().map(Option::is_some).collect())
+}
+
+/// The dimension of a picture that connects planes to the nearest known one.
+fn as_estimated(
+    planes: &crate::Planes,
+    estimate: &crate::Estimate,
+    scale: f64,
+    known: &[Vec<bool>; 3],
+    loose: &crate::Loose,
+) -> Option<Suggestion> {
+    let (axis, own) = (loose.axis, loose.planes[0]);
+    let at = estimate.plane(axis, own);
+    let gap = |k: usize| (at - estimate.plane(axis, k)) * scale;
+    let known =
+        (known[axis.index()].iter().enumerate()).filter_map(|(k, known)| known.then_some(k));
+    let (k, gap) = known.map(|k| (k, gap(k))).min_by(|a, b| a.1.abs().total_cmp(&b.1.abs()))?;
+    let (p, q) = (*planes.members(axis, k).first()?, *planes.members(axis, own).first()?);
+    let (p, q) = if gap < 0.0 { (q, p) } else { (p, q) };
+    let open = !estimate.determines(axis, k, own);
+    Some(Suggestion { axis, p, q, value: rounded(gap.abs()), open })
+}
+
+/// The suggestions of a picture as they are if each is accepted before the next is asked for. With
+/// lengths, slopes or angles, which may determine further planes, only the first.
+pub(super) fn suggested_in_turn(
+    object: &SketchObject,
+    view: &DrawingCache,
+    layout: &DimensionLayout<f64>,
+) -> Vec<Suggestion> {
+    let planes = &view.planes;
+    let Some(estimate) = view.estimate() else { return vec![] };
+    let along = |d: &Dimension| {
+        matches!(d.measure, MeasuredQuantity::Along { .. } | MeasuredQuantity::Datum { .. })
+    };
+    let placed = object.reference().is_some_and(|r| r.at.iter().all(|at| at.literal().is_some()));
+    let simple = placed
+        && (object.dimensions.iter())
+            .filter(|(_, d)| d.role == DimensionRole::Driving && d.value.is_some())
+            .all(|(key, d)| along(d) && layout.values.contains_key(key));
+    let mut scale = PageScale::of(object, planes, layout, estimate);
+    let mut known = known_planes(layout);
+    let mut left: Vec<&crate::Loose> = layout.loose.iter().collect();
+    let mut out = Vec::new();
+    loop {
+        let now = scale.value();
+        let one = |loose: &&crate::Loose| as_estimated(planes, estimate, now, &known, loose);
+        let found = left.iter().enumerate().find_map(|(k, loose)| Some((k, one(loose)?)));
+        let Some((k, found)) = found else { return out };
+        let loose = left.remove(k);
+        for &plane in &loose.planes {
+            known[loose.axis.index()][plane] = true;
+        }
+        let gap = estimate.gap(planes, found.axis, [found.p, found.q]);
+        gap.into_iter().for_each(|gap| scale.add(found.value, gap));
+        out.push(found);
+        if !simple {
+            return out;
+        }
+    }
 }
 
 /// The dimension of an exact drawing that connects planes to those that are known.

@@ -3,7 +3,7 @@
 use super::CommandError;
 use super::args::Args;
 use super::draw::{require_lines, require_point};
-use super::info::{likely_aligns, suggestions};
+use super::info::{likely_aligns, suggested_in_turn, suggestions};
 use super::question::Question;
 use super::session::{CommandReply, MAX_POINTS, SketchSession};
 use super::subject::{ReplySubject, Suggestion};
@@ -306,6 +306,7 @@ impl SketchSession {
     ) -> (SketchObject, Vec<(String, Suggestion)>) {
         let mut out = object.clone();
         let mut taken = Vec::new();
+        let mut free = 1;
         loop {
             let (view, layout) = self.laid_out(&out);
             let aligned = likely_aligns(&out, &view, &layout);
@@ -313,16 +314,23 @@ impl SketchSession {
                 out.draw().aligns.extend(aligned);
                 continue;
             }
-            let found = suggestions(&out, &view, &layout).flatten();
-            // A picture's suggestion changes with each dimension; an exact drawing gives all at
-            // once.
-            let many = if out.drawing.exact { usize::MAX } else { 1 };
-            let found: Vec<Suggestion> = found.take(many).collect();
+            let found: Vec<Suggestion> = if out.drawing.exact {
+                suggestions(&out, &view, &layout).flatten().collect()
+            } else {
+                suggested_in_turn(&out, &view, &layout)
+            };
             if found.is_empty() {
                 return (out, taken);
             }
             for s in found {
-                let name = out.fresh_name("E");
+                // Names are only added, so the lowest free number never falls.
+                let name = loop {
+                    let name = format!("E{free}");
+                    if !out.has_name(&name) {
+                        break name;
+                    }
+                    free += 1;
+                };
                 out.add_dimension(crate::Dimension {
                     name: name.clone(),
                     measure: crate::MeasuredQuantity::Along { axis: s.axis, p: s.p, q: s.q },

@@ -311,8 +311,8 @@ impl SketchSession {
             None => None,
         };
         let object = Arc::clone(self.state.objects.get(&name.to_lowercase())?);
-        let data = self.data(&object);
-        Some(crate::format::svg::marks(&object, &data, view.as_ref()))
+        let (planes, data) = (Arc::clone(&self.view(&object).planes), self.data(&object));
+        Some(crate::format::svg::marks(&object, &planes, &data, view.as_ref()))
     }
 
     fn changes_since(&mut self, before: &SessionState) -> Vec<ObjectChange> {

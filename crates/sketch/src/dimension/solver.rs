@@ -204,32 +204,58 @@ pub fn scale<T: Real>(
     layout: &DimensionLayout<T>,
     estimate: &Estimate,
 ) -> f64 {
-    let (mut product, mut square) = (0.0, 0.0);
-    for (key, d) in &object.dimensions {
-        if let MeasuredQuantity::Along { axis, p, q } = d.measure
-            && let (Some(a), Some(b)) = (planes.plane(axis, p), planes.plane(axis, q))
-            && let Some(value) = layout.values.get(key)
-        {
-            let gap = estimate.plane(axis, b) - estimate.plane(axis, a);
-            product += value.re() * gap;
-            square += gap * gap;
+    PageScale::of(object, planes, layout, estimate).value()
+}
+
+/// The sums of a scale, to which dimensions along axes can be added.
+pub(crate) struct PageScale {
+    /// Of value times gap, and of gap squared.
+    along: [f64; 2],
+    /// The same for each line with a length.
+    lengths: Vec<[f64; 2]>,
+}
+
+impl PageScale {
+    pub fn of<T: Real>(
+        object: &SketchObject,
+        planes: &Planes,
+        layout: &DimensionLayout<T>,
+        estimate: &Estimate,
+    ) -> PageScale {
+        let mut out = PageScale { along: [0.0; 2], lengths: Vec::new() };
+        for (key, d) in &object.dimensions {
+            let Some(value) = layout.values.get(key).map(|v| v.re()) else { continue };
+            match d.measure {
+                MeasuredQuantity::Along { axis, p, q } => {
+                    let gap = estimate.gap(planes, axis, [p, q]);
+                    gap.into_iter().for_each(|gap| out.add(value, gap));
+                }
+                MeasuredQuantity::Length(l) => {
+                    let Some(line) = object.drawing.lines.get(&l) else { continue };
+                    let [p, q] = [line.p, line.q].map(|p| estimate.point(planes, p));
+                    let long = p.distance(q);
+                    out.lengths.push([value * long, long * long]);
+                }
+                _ => {}
+            }
         }
+        out
     }
-    if square > 0.0 && product > 0.0 {
-        return product / square;
+
+    /// Adds a dimension along an axis.
+    pub fn add(&mut self, value: f64, gap: f64) {
+        self.along[0] += value * gap;
+        self.along[1] += gap * gap;
     }
-    // No dimension along an axis: from the lengths.
-    for (key, d) in &object.dimensions {
-        if let MeasuredQuantity::Length(l) = d.measure
-            && let (Some(line), Some(value)) =
-                (object.drawing.lines.get(&l), layout.values.get(key))
-        {
-            let [p, q] = [line.p, line.q].map(|p| estimate.point(planes, p));
-            product += value.re() * p.distance(q);
-            square += p.distance(q) * p.distance(q);
-        }
+
+    /// From the lengths where the dimensions along axes determine none.
+    pub fn value(&self) -> f64 {
+        let ratio =
+            |[product, square]: [f64; 2]| (square > 0.0 && product > 0.0).then(|| product / square);
+        let with_lengths =
+            || self.lengths.iter().fold(self.along, |s, l| [s[0] + l[0], s[1] + l[1]]);
+        ratio(self.along).or_else(|| ratio(with_lengths())).unwrap_or(1.0)
     }
-    if square > 0.0 && product > 0.0 { product / square } else { 1.0 }
 }
 
 fn check<T: Real>(

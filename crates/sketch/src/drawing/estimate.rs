@@ -107,6 +107,17 @@ impl Estimate {
         self.coordinates[axis.index()].get(plane).copied().unwrap_or(0.0)
     }
 
+    /// The estimated distance along an axis from a point to another; `None` of unknown points.
+    pub(crate) fn gap(
+        &self,
+        planes: &Planes,
+        axis: CoordinateAxis,
+        [p, q]: [PointId; 2],
+    ) -> Option<f64> {
+        let at = |p| Some(self.plane(axis, planes.plane(axis, p)?));
+        Some(at(q)? - at(p)?)
+    }
+
     /// True if the picture determines the distance between two planes of an axis: no open depth
     /// changes it.
     pub fn determines(&self, axis: CoordinateAxis, a: usize, b: usize) -> bool {

@@ -221,7 +221,7 @@ fn dimensions(
     view: Option<&Projection>,
     items: &mut Vec<SvgElement>,
 ) {
-    for mark in marks(object, data, view) {
+    for mark in marks(object, &crate::Planes::of(&object.drawing), data, view) {
         let colour = mark.axis.map_or("#555", axis_colour);
         for [from, to] in mark.witnesses {
             items.push(SvgElement::Stroke { from, to, colour, width: 0.5, dashed: false });
@@ -236,10 +236,10 @@ fn dimensions(
 /// Positions of an object's dimensions, on the page as drawn or in a view of the body.
 pub(crate) fn marks(
     object: &SketchObject,
+    planes: &crate::Planes,
     data: &ObjectData,
     view: Option<&Projection>,
 ) -> Vec<DimensionMark> {
-    let planes = crate::Planes::of(&object.drawing);
     let known: BTreeMap<crate::PointId, [Option<f64>; 3]> = data.points.iter().copied().collect();
     let values: BTreeMap<String, f64> =
         (data.dimensions.iter()).filter_map(|d| Some((d.0.to_lowercase(), d.2?))).collect();
@@ -251,13 +251,13 @@ pub(crate) fn marks(
                 Some(view.project(Vec3::new(x?, y?, z?)))
             };
             let page = Page { place: &place, unit: &|axis| view.unit(axis) };
-            dimension_marks(object, &planes, &page, &value)
+            dimension_marks(object, planes, &page, &value)
         }
         None => {
             let drawing = &object.drawing;
             let place = |p: crate::PointId| drawing.points.get(&p).map(|p| [p.u, p.v]);
             let page = Page { place: &place, unit: &|axis| drawing.projection.unit(axis) };
-            dimension_marks(object, &planes, &page, &value)
+            dimension_marks(object, planes, &page, &value)
         }
     }
 }

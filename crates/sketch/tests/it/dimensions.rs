@@ -434,3 +434,43 @@ fn open_depths_have_their_likeliest_values() {
         }
     }
 }
+
+/// ACCEPT ALL takes what the picture suggests as if each dimension were accepted before the next.
+#[test]
+fn all_at_once_is_one_after_the_other() {
+    let mut random = Random::new(7);
+    let (mut compared, mut most) = (0, 0);
+    for case in cases() {
+        for _ in 0..12 {
+            let mut object = case.object.clone();
+            let share = random.between(0.0, 0.6);
+            object.dimensions.retain(|_, d| d.name == "E1" || random.between(0.0, 1.0) < share);
+            for p in object.draw().points.values_mut() {
+                (p.u, p.v) = (p.u + random.signed(), p.v + random.signed());
+            }
+            let mut all = SketchSession::new();
+            all.insert(object.clone());
+            all.run_line("ACCEPT ALL");
+            let at_once = all.active_object().unwrap();
+            if at_once.drawing.aligns != object.drawing.aligns {
+                continue;
+            }
+            let mut one = SketchSession::new();
+            one.insert(object);
+            let mut taken = 0;
+            while let Some(s) = one.suggestions(&case.object.name).unwrap().iter().flatten().next()
+            {
+                let mut names = (1..).map(|k| format!("E{k}"));
+                let name = names.find(|n| !one.active_object().unwrap().has_name(n));
+                let Suggestion { axis, p, q, value, .. } = s;
+                one.run_line(&format!("DIMENSION {} {axis} {p} TO {q} = {value}", name.unwrap()));
+                taken += 1;
+                assert!(taken < 200, "{}", case.id);
+            }
+            assert_eq!(at_once.dimensions, one.active_object().unwrap().dimensions, "{}", case.id);
+            compared += 1;
+            most = most.max(taken);
+        }
+    }
+    assert!(compared > 40 && most > 8, "{compared} of at most {most}");
+}
