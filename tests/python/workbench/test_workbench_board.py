@@ -347,9 +347,14 @@ def test_a_picture_is_moved_scaled_and_kept(board: Callable[..., BoardHand]) -> 
     b.reload()
     image = b.page.locator("image.underlay")
     b.until(image.is_visible)
-    x, y, width, _ = framed(b)
-    origin = b.at(0, 0)
-    assert [(x - origin[0]) / width, (y - origin[1]) / width] == pytest.approx(before, abs=0.01)
+
+    def kept() -> bool:
+        x, y, width, _ = framed(b)
+        origin = b.at(0, 0)
+        found = [(x - origin[0]) / width, (y - origin[1]) / width]
+        return bool(found == pytest.approx(before, abs=0.01))
+
+    b.until(kept)
     assert image.get_attribute("opacity") == "0.8" and b.text() == text
     assert not b.faults
 

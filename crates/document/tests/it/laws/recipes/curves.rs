@@ -118,6 +118,21 @@ pub fn arguments(p: &mut Program, kind: &str) -> Option<String> {
             let (sheet, at) = (p.sheet(), p.number(1.0, 3.0));
             format!("{sheet}, {}", p.object("XPlane", &format!("{at}*w")))
         }
+        // Two walls side by side, which end beyond the sheet.
+        "BodyIntersection" => {
+            let sheet = p.sheet();
+            let posts =
+                [(1.3, 2.2, -0.4), (1.5, 2.0, 1.0), (1.6, 1.9, 2.4)].map(|(low, high, y)| {
+                    let foot = p.object("AbsPoint", &format!("{low}*w, {y}, -1"));
+                    let head = p.object("AbsPoint", &format!("{high}*w, {y}, 1"));
+                    p.object("Line", &format!("{foot}, {head}"))
+                });
+            let walls: Vec<String> = posts
+                .windows(2)
+                .map(|w| p.object("RuledSurf", &format!("{}, {}, visible = 0", w[0], w[1])))
+                .collect();
+            format!("{{{}}}, {{{sheet}}}", walls.join(", "))
+        }
         "ProjCurve" => {
             let (sheet, strand) = (p.sheet(), p.strand());
             match p.random.below(2) {
