@@ -23,22 +23,22 @@ fn cosine(k: usize) -> f64 {
 }
 
 /// The parameters of the samples between `a` and `b`, both included, ascending.
-pub fn nodes(a: f64, b: f64) -> impl Iterator<Item = f64> {
-    (0..NODES).map(move |k| 0.5 * (a + b) - 0.5 * (b - a) * cosine(k))
+pub fn nodes<T: Real>(a: T, b: T) -> impl Iterator<Item = T> {
+    (0..NODES).map(move |k| (a + b) * 0.5 - (b - a) * 0.5 * cosine(k))
 }
 
 /// A polynomial on a stretch of the parameter, by its Chebyshev coefficients.
 pub struct ChebyshevPiece<T> {
-    /// Start.
-    pub from: f64,
+    /// Start, which may move with the variables of the model.
+    pub from: T,
     /// End.
-    pub to: f64,
+    pub to: T,
     coefficients: Vec<Vec3<T>>,
 }
 
 impl<T: Real> ChebyshevPiece<T> {
     /// The polynomial through `samples` at the nodes between `from` and `to` (Trefethen 2013, ch. 3).
-    pub fn through(from: f64, to: f64, samples: &[Vec3<T>]) -> Self {
+    pub fn through(from: T, to: T, samples: &[Vec3<T>]) -> Self {
         let n = DEGREE;
         let coefficient = |j: usize| {
             let mut sum = Vec3::zero();
@@ -77,9 +77,10 @@ impl<T: Real> CurveFormula for PiecewiseChebyshev<T> {
 
     /// Clenshaw's recurrence.
     fn at<J: Jet<T>>(&self, t: J) -> Vec3<J> {
-        let k = in_charge(&self.pieces, |piece| piece.from, t.re());
+        let k = in_charge(&self.pieces, |piece| piece.from.re(), t.re());
         let ChebyshevPiece { from, to, coefficients } = &self.pieces[k];
-        let x = ((t - *from) * 2.0 / (*to - *from)) - 1.0;
+        let [from, to] = [*from, *to].map(J::fixed);
+        let x = ((t - from) * 2.0 / (to - from)) - 1.0;
         let (mut b, mut c) = (Vec3::<J>::zero(), Vec3::<J>::zero());
         for coefficient in coefficients[1..].iter().rev() {
             let next = coefficient.map(J::fixed) + b * (x * 2.0) - c;
@@ -90,7 +91,7 @@ impl<T: Real> CurveFormula for PiecewiseChebyshev<T> {
     }
 
     fn breaks(&self) -> Vec<f64> {
-        self.pieces[1..].iter().map(|piece| piece.from).collect()
+        self.pieces[1..].iter().map(|piece| piece.from.re()).collect()
     }
 
     moldloft_num::curve_facts!(broken, open, not_rational);

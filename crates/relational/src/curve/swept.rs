@@ -37,8 +37,8 @@ pub struct ProcCurve<T: Real> {
 impl<T: Real> Build<T> for ProcCurve<T> {
     fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let Self { bead, point, t1, t2 } = self;
-        let at = |t: f64| {
-            let place = t1 * (1.0 - t) + t2 * t;
+        let at = |t: T| {
+            let place = t1 * (-t + 1.0) + t2 * t;
             point.at(place).map_err(|fault| no_locus("point", place.re(), &fault, Self::POINT))
         };
         let mut size = 0.0f64;
@@ -72,30 +72,29 @@ pub fn no_locus(noun: &str, t: f64, fault: &CallError, field: FieldId) -> CallEr
     fault.related.iter().fold(whole, |whole, (key, label)| whole.related(Some(*key), label.clone()))
 }
 
-/// The ends of the stretches of [0, 1] in which the curve of the bead is smooth.
-pub fn stretches<T: Real>(bead: &Bead<T>, [t1, t2]: [T; 2]) -> Vec<f64> {
-    let (low, high) = (t1.re(), t2.re());
-    let breaks = bead.curve.breaks().into_iter().map(|b| (b - low) / (high - low));
-    let mut ends = vec![0.0];
-    ends.extend(breaks.filter(|t| *t > 0.0 && *t < 1.0));
-    ends.push(1.0);
-    ends.sort_by(f64::total_cmp);
+/// The ends of the stretches of [0, 1] in which the curve of the bead is smooth; they move with t1 and t2.
+pub fn stretches<T: Real>(bead: &Bead<T>, [t1, t2]: [T; 2]) -> Vec<T> {
+    let breaks = bead.curve.breaks().into_iter().map(|b| (T::from(b) - t1) / (t2 - t1));
+    let mut ends = vec![T::zero()];
+    ends.extend(breaks.filter(|t| t.re() > 0.0 && t.re() < 1.0));
+    ends.push(T::one());
+    ends.sort_by(|a, b| a.re().total_cmp(&b.re()));
     ends
 }
 
 /// The pieces of these stretches, halved until each fits: `piece` makes one and says whether it does.
 /// Pieces so short that they cannot be halved again stay as they are, which keeps a kink.
-pub fn halved<P>(
-    ends: &[f64],
-    mut piece: impl FnMut(f64, f64) -> Result<(P, bool), CallError>,
+pub fn halved<T: Real, P>(
+    ends: &[T],
+    mut piece: impl FnMut(T, T) -> Result<(P, bool), CallError>,
 ) -> Result<Vec<P>, CallError> {
-    let mut todo: Vec<(f64, f64, u32)> = ends.windows(2).map(|w| (w[0], w[1], 0)).collect();
+    let mut todo: Vec<(T, T, u32)> = ends.windows(2).map(|w| (w[0], w[1], 0)).collect();
     todo.reverse();
     let mut pieces = Vec::new();
     while let Some((a, b, depth)) = todo.pop() {
         let (made, fits) = piece(a, b)?;
         if !fits && depth < DEEPEST && pieces.len() + todo.len() < MOST_PIECES {
-            let mid = 0.5 * (a + b);
+            let mid = (a + b) * 0.5;
             todo.push((mid, b, depth + 1));
             todo.push((a, mid, depth + 1));
         } else {

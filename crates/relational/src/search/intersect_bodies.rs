@@ -1,7 +1,7 @@
 //! The intersection of two bodies of several faces: the intersections of pairs of faces, end to end.
 
 use super::cut::{CutView, Second};
-use super::intersect_snake::{CutRequest, IntersectionFields, apart, set_up};
+use super::intersect_snake::{CutRequest, IntersectionFields, set_up};
 use crate::curve::CompositeCurve;
 use moldloft_locate::march::{Branch, BranchEnd, Crossing, Other};
 use moldloft_locate::{PlainSurface, nearest_on_surface};
@@ -70,11 +70,11 @@ impl<T: Real> Build<T> for BodyIntersection<T> {
         let chosen =
             (0..chains.len()).min_by(|&a, &b| away(&chains[a]).total_cmp(&away(&chains[b])));
         let Some(chosen) = chosen else {
-            let first = PlainSurface(&*bodies[0][0]);
-            let second = Second::Surface(bodies[1][0].clone());
-            let plain = second.plain();
-            let crossing = crossing(&first, &plain);
-            return Err(apart(&crossing, [0.5; 2], "other body").in_field(Self::FACES2));
+            return Err(CallError::new("no-intersection", "the bodies do not meet")
+                .expected("faces that cross")
+                .found("no two faces with a common curve")
+                .help("move or lengthen one of the bodies")
+                .in_field(Self::FACES2));
         };
         let report = report(&segments, &chains, chosen, by_point);
         let made = ChainedCuts::of(&bodies, &segments, &chains[chosen], Self::FIELDS, context)?;

@@ -595,7 +595,7 @@ fn traced<T: Real>(
 }
 
 /// The error of shapes that do not meet.
-pub(super) fn apart(crossing: &Crossing<'_>, from: [f64; 2], second: &'static str) -> CallError {
+fn apart(crossing: &Crossing<'_>, from: [f64; 2], second: &'static str) -> CallError {
     let x = crossing.first.jet(from[0], from[1], Order::Zero).p;
     let residual = match crossing.other {
         Other::Plane(plane) => plane.distance(x).abs(),

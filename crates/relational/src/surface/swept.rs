@@ -45,8 +45,8 @@ const PROBES: [f64; 6] = [0.0, 0.17, 0.39, 0.61, 0.83, 1.0];
 impl<T: Real> Build<T> for ProcSurf<T> {
     fn build(self, context: &Context) -> Result<Value<T>, CallError> {
         let Self { bead, curve, t1, t2 } = self;
-        let at = |t: f64| {
-            let place = t1 * (1.0 - t) + t2 * t;
+        let at = |t: T| {
+            let place = t1 * (-t + 1.0) + t2 * t;
             curve.at(place).map_err(|fault| no_locus("curve", place.re(), &fault, Self::CURVE))
         };
         let mut size = 0.0f64;
@@ -74,8 +74,8 @@ impl<T: Real> Build<T> for ProcSurf<T> {
 
 /// A stretch along v: the curves at its nodes.
 struct RibStrip<T: Real> {
-    from: f64,
-    to: f64,
+    from: T,
+    to: T,
     ribs: Vec<CurveRef<T>>,
 }
 
@@ -94,7 +94,9 @@ impl<T: Real> Column for SweptSkin<T> {
     type Across<S: Real> = PiecewiseChebyshev<S>;
 
     fn across<J: Jet<T>>(&self, u: J) -> Option<PiecewiseChebyshev<J>> {
-        let piece = |s: &RibStrip<T>| ChebyshevPiece::through(s.from, s.to, &s.places(u));
+        let piece = |s: &RibStrip<T>| {
+            ChebyshevPiece::through(J::fixed(s.from), J::fixed(s.to), &s.places(u))
+        };
         Some(PiecewiseChebyshev { pieces: self.strips.iter().map(piece).collect() })
     }
 
@@ -107,7 +109,7 @@ impl<T: Real> Column for SweptSkin<T> {
             .collect();
         us.sort_by(f64::total_cmp);
         us.dedup_by(|b, a| *b - *a < 1e-12);
-        [us, self.strips[1..].iter().map(|s| s.from).collect()]
+        [us, self.strips[1..].iter().map(|s| s.from.re()).collect()]
     }
 
     /// An edge whose ribs all coincide in a point is a pole.
