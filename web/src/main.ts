@@ -366,7 +366,7 @@ const app: App = {
     const objects = model.objects
       .slice(0, 2000)
       .map((o) => ({ name: `Select ${o.name}`, keys: o.kind, run: () => actions.select(o.name, 'tree') }))
-    palette([...commands(app), ...objects], words)
+    palette(() => [...commands(app), ...objects], words, askRecent())
   },
   download: (kind) => download(app, kind),
   copyLink: () => copyLink(app),

@@ -9,7 +9,8 @@ export interface Command {
 }
 
 /** `words`: what is typed there already. */
-export function palette(all: Command[], words = ''): void {
+/** Commands to choose from by words; they are asked anew once `later` is there. */
+export function palette(all: () => Command[], words = '', later?: Promise<unknown>): void {
   if (document.querySelector('dialog[open]')) return
   const input = h('input', {
     type: 'text',
@@ -29,7 +30,9 @@ export function palette(all: Command[], words = ''): void {
   }
   const build = () => {
     const sought = input.value.toLowerCase().split(/\s+/).filter(Boolean)
-    found = all.filter((c) => sought.every((w) => c.name.toLowerCase().includes(w))).slice(0, 60)
+    found = all()
+      .filter((c) => sought.every((w) => c.name.toLowerCase().includes(w)))
+      .slice(0, 60)
     at = Math.max(0, Math.min(at, found.length - 1))
     list.replaceChildren(
       ...found.map((c, k) =>
@@ -61,6 +64,7 @@ export function palette(all: Command[], words = ''): void {
   dialog.showModal()
   input.value = words
   build()
+  void later?.then(build, () => undefined)
   input.focus()
 }
 
