@@ -3,13 +3,17 @@
 
 use crate::bernstein::halves;
 use crate::cell::{FitLimits, PolynomialCell, cells_of};
+use crate::flotation::Attitude;
 use crate::folds::fold;
-use crate::integrals::{HalvedCell, Immersed, Wanted, immersed};
+use crate::integrals::{HalvedCell, HydrostaticIntegrals, Immersed, Wanted, immersed};
+use crate::moments::BodyMoments;
+use crate::strip::NEGLIGIBLE;
 use crate::trimmed::TrimLoops;
 use moldloft_mesh::Mesh;
 use moldloft_num::{Box3, Real, Surface, Vec3};
+use std::any::Any;
 use std::ops::Range;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 /// Default relative accuracy of figures.
 pub const USUAL_ACCURACY: f64 = 1e-6;
@@ -53,6 +57,9 @@ pub struct Body<T> {
     ends: Vec<usize>,
     size: f64,
     accuracy: f64,
+    /// Made when first asked for, as [`Self::real`] is.
+    moments: OnceLock<Arc<BodyMoments<T>>>,
+    real: OnceLock<Arc<Body<f64>>>,
 }
 
 /// Areas, volume and centres of a whole skin.
@@ -133,8 +140,7 @@ impl<T: Real> Body<T> {
         accuracy: f64,
     ) -> Option<Self> {
         let limits = fit_limits(size, accuracy);
-        let mut body =
-            Self { cells: Vec::new(), rims, folds: Vec::new(), ends: Vec::new(), size, accuracy };
+        let mut body = Self { rims, ..Self::of_cells(Vec::new(), size, accuracy) };
         for (k, side) in sides.iter().enumerate() {
             let cells = cells_of(side.surface, side.loops, side.reversed, limits)?;
             for edge in (0..4).filter(|&edge| side.open_edges[edge]) {
@@ -163,7 +169,9 @@ impl<T: Real> Body<T> {
 
     /// The body of cells, without rims.
     pub(crate) fn of_cells(cells: Vec<Arc<PolynomialCell<T>>>, size: f64, accuracy: f64) -> Self {
-        Self { cells, rims: Vec::new(), folds: Vec::new(), ends: Vec::new(), size, accuracy }
+        let (rims, folds, ends) = (Vec::new(), Vec::new(), Vec::new());
+        let (moments, real) = (OnceLock::new(), OnceLock::new());
+        Self { cells, rims, folds, ends, size, accuracy, moments, real }
     }
 
     /// True for a body without cells.
@@ -197,7 +205,8 @@ impl<T: Real> Body<T> {
         let accuracy = self.quadrature_accuracy();
         let origin = [T::zero(); 2];
         let cells = &self.cells[cells];
-        immersed(cells, level, origin, self.size, accuracy, Wanted::Skin).sums.wetted
+        let none = HydrostaticIntegrals::zero();
+        immersed(cells, &none, level, origin, self.size, accuracy, Wanted::Skin).sums.wetted
     }
 
     /// The cells of each side in turn, for a body made of sides; those of panels follow.
@@ -224,6 +233,8 @@ impl<T: Real> Body<T> {
             ends: self.ends.clone(),
             size: self.size,
             accuracy: self.accuracy,
+            moments: OnceLock::new(),
+            real: OnceLock::new(),
         }
     }
 
@@ -236,9 +247,18 @@ impl<T: Real> Body<T> {
         };
         let image = self.mapped(mirrored, true);
         let mut both = self.clone();
+        (both.moments, both.real) = (OnceLock::new(), OnceLock::new());
         both.cells.extend(image.cells);
         both.rims.extend(image.rims);
         both
+    }
+
+    /// The body without derivatives, made once.
+    pub(crate) fn real(&self) -> &Body<f64> {
+        match (self as &dyn Any).downcast_ref() {
+            Some(body) => body,
+            None => self.real.get_or_init(|| Arc::new(self.re())),
+        }
     }
 
     /// The body without derivatives.
@@ -250,6 +270,8 @@ impl<T: Real> Body<T> {
             ends: self.ends.clone(),
             size: self.size,
             accuracy: self.accuracy,
+            moments: OnceLock::new(),
+            real: OnceLock::new(),
         }
     }
 
@@ -301,17 +323,12 @@ impl<T: Real> Body<T> {
         }
     }
 
-    /// The integrals below `level` about (x0, y0).
-    pub(crate) fn integrals(&self, level: T, origin: [T; 2]) -> Immersed<T> {
-        self.wanted_integrals(level, origin, Wanted::All, self.quadrature_accuracy())
-    }
-
     /// The relative accuracy of integrals for figures of this accuracy.
     pub(crate) fn quadrature_accuracy(&self) -> f64 {
         (SHARE * self.accuracy).max(FINEST)
     }
 
-    /// As [`Self::integrals`], with the `wanted` ones to a relative accuracy.
+    /// The `wanted` integrals below `level` about (x0, y0), to a relative accuracy.
     pub(crate) fn wanted_integrals(
         &self,
         level: T,
@@ -319,7 +336,45 @@ impl<T: Real> Body<T> {
         wanted: Wanted,
         accuracy: f64,
     ) -> Immersed<T> {
-        immersed(&self.cells, level, origin, self.size, accuracy, wanted)
+        let none = HydrostaticIntegrals::zero();
+        immersed(&self.cells, &none, level, origin, self.size, accuracy, wanted)
+    }
+
+    /// The `wanted` integrals at an attitude about (x0, y0) in earth axes, to a relative accuracy;
+    /// without the leaves of cells that are wholly below the water.
+    pub(crate) fn immersed_at(
+        &self,
+        attitude: Attitude<T>,
+        origin: [T; 2],
+        wanted: Wanted,
+        accuracy: f64,
+    ) -> Immersed<T> {
+        let moments = self
+            .moments
+            .get_or_init(|| Arc::new(BodyMoments::new(&self.cells, self.bounds().centre())));
+        let area = (wanted != Wanted::Displacement).then_some(accuracy);
+        let below = moments.below(attitude, origin, NEGLIGIBLE * self.size, area);
+        let rotation = attitude.rotation();
+        let turned = |k: usize| match &rotation {
+            Some(place) => Arc::new(self.cells[k].mapped(place, false)),
+            None => self.cells[k].clone(),
+        };
+        let cells: Vec<_> = below.across.into_iter().map(turned).collect();
+        let level = attitude.level;
+        let mut all = immersed(&cells, &below.sums, level, origin, self.size, accuracy, wanted);
+        all.errors[2] += below.area_error;
+        all
+    }
+
+    /// The lowest and the highest control point along an axis.
+    pub(crate) fn heights(&self, up: Vec3) -> [f64; 2] {
+        let heights = self.cells.iter().flat_map(|c| c.net().iter().map(|p| p.re().dot(up)));
+        heights.fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], z| [a.min(z), b.max(z)])
+    }
+
+    /// The rims without the skin.
+    pub(crate) fn rims_alone(&self) -> Self {
+        Self { rims: self.rims.clone(), ..Self::of_cells(Vec::new(), self.size, self.accuracy) }
     }
 
     /// Errors due to the distance between cells and surfaces, rounding of coordinates included: of
@@ -350,7 +405,7 @@ impl<T: Real> Body<T> {
     pub fn lowest(&self, direction: Vec3<f64>) -> Option<T> {
         if T::TAPED {
             // A tape has the corner that is lowest, not the search for it.
-            let place = self.re().lowest_place(|p| along(p, direction))?;
+            let place = self.real().lowest_place(|p| along(p, direction))?;
             let cell = self.cells[place.root].along_path(&place.path);
             return Some(along(cell.net()[place.corner], direction));
         }

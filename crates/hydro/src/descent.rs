@@ -44,10 +44,9 @@ impl EquilibriumProblem<'_, f64> {
         let level = self.level(trim, heel).ok()?;
         let at = [level, trim, heel];
         let attitude = Attitude::of(at);
-        let turned = attitude.turned(self.body);
         let g = attitude.earth_from(self.loading.centre.unwrap_or_default());
-        let sums = displaced(&turned, level, [g.x, g.y], self.count, self.accuracy);
-        let volume = sums.forms[2];
+        let sums = displaced(self.body, attitude, [g.x, g.y], self.count, self.accuracy);
+        let volume = sums.volume;
         let [trims, heels] = self.tilts(trim);
         let slopes = [trims * sums.moment.x / volume, heels * sums.moment.y / volume];
         Some(EnergyState { at, energy: g.z - sums.moment.z / volume - level, slopes })

@@ -142,8 +142,7 @@ pub fn equilibrium<T: Real>(
     if half && (loading.free_heel || start.heel.re() != 0.0) {
         return Err(FloatError::HalfHeels);
     }
-    let real = body.re();
-    let problem = EquilibriumProblem::new(&real, water, loading)?;
+    let problem = EquilibriumProblem::new(body.real(), water, loading)?;
     let [trim, heel] = [start.trim.re(), start.heel.re()];
     let level = match problem.rough() {
         Some(rough) if problem.free.len() > 1 => rough.level(trim, heel),
@@ -241,7 +240,8 @@ impl<'m> EquilibriumProblem<'m, f64> {
         let middle = bounds.centre();
         let accuracy = body.quadrature_accuracy();
         let origin = [middle.x, middle.y];
-        let volume = displaced(body, middle.z, origin, 1.0, ROUGH.max(accuracy)).forms[2];
+        let upright = Attitude::upright(middle.z);
+        let volume = displaced(body, upright, origin, 1.0, ROUGH.max(accuracy)).volume;
         if volume == 0.0 {
             return Err(FloatError::NoBody);
         }
@@ -277,20 +277,22 @@ impl<'m> EquilibriumProblem<'m, f64> {
 
     /// The level at which the body displaces its mass, at a trim and heel.
     pub(crate) fn level(&self, trim: f64, heel: f64) -> Result<f64, FloatError> {
-        let turned = Attitude { level: 0.0, trim, heel }.turned(self.body);
-        let bounds = turned.bounds();
+        let attitude = Attitude { level: 0.0, trim, heel };
+        let middle = attitude.earth_from(self.body.bounds().centre());
         let density = self.water.density;
         let wanted = self.loading.mass / density;
-        let middle = bounds.centre();
         let volume = |z: f64| {
-            let sums = displaced(&turned, z, [middle.x, middle.y], self.count, self.accuracy);
-            (sums.forms[2] - wanted, sums.plane[0])
+            let (at, origin) = (Attitude { level: z, ..attitude }, [middle.x, middle.y]);
+            let sums = displaced(self.body, at, origin, self.count, self.accuracy);
+            (sums.volume - wanted, sums.plane[0])
         };
+        let [low, high] = self.body.heights(attitude.axes()[2]);
         // Slightly above the top, so that panels in the top are submerged.
-        let (mut low, mut high) = (bounds.low.z, bounds.high.z + 1e-9 * self.size);
+        let (mut low, mut high) = (low, high + 1e-9 * self.size);
         // An open body displaces no more once its rim is immersed.
         let half = self.water.symmetry != Symmetry::None;
-        let full = turned.lowest_rim(half).map_or(high, |z| z.min(high));
+        let rims = attitude.turned(&self.body.rims_alone());
+        let full = rims.lowest_rim(half).map_or(high, |z| z.min(high));
         let when_full = volume(full).0;
         let most = if full < high { when_full.max(volume(high).0) } else { when_full } + wanted;
         if wanted > most * (1.0 + 1e-12) {
@@ -339,7 +341,7 @@ impl<'m> EquilibriumProblem<'m, f64> {
 
     fn slopes_of(&self, at: [f64; 3], found: &Displacement<f64>) -> [[f64; 3]; 3] {
         let Displacement { sums, centre: g } = found;
-        let v = sums.forms[2];
+        let v = sums.volume;
         let [a, ax, ay, axx, axy, ayy] = sums.plane;
         let (px, qy) = (ax + a * g.x, ay + a * g.y);
         let ipp = axx + 2.0 * g.x * ax + g.x * g.x * a;
@@ -501,10 +503,9 @@ struct Displacement<T> {
 impl<T: Real> EquilibriumProblem<'_, T> {
     fn displacement(&self, unknowns: [T; 3]) -> Displacement<T> {
         let attitude = Attitude::of(unknowns);
-        let turned = attitude.turned(self.body);
         let centre = attitude.earth_from(self.loading.centre.unwrap_or_default());
-        let (level, origin) = (attitude.level, [centre.x, centre.y]);
-        let sums = displaced(&turned, level, origin, self.count, self.accuracy);
+        let origin = [centre.x, centre.y];
+        let sums = displaced(self.body, attitude, origin, self.count, self.accuracy);
         Displacement { centre, sums }
     }
 
@@ -517,7 +518,7 @@ impl<T: Real> EquilibriumProblem<'_, T> {
     fn residual_of(&self, Displacement { sums, .. }: &Displacement<T>) -> [T; 3] {
         let wanted = self.loading.mass / self.water.density;
         let arm = wanted * self.size;
-        [sums.forms[2] / wanted - 1.0, sums.moment.x / arm, sums.moment.y / arm]
+        [sums.volume / wanted - 1.0, sums.moment.x / arm, sums.moment.y / arm]
     }
 }
 

@@ -1,5 +1,6 @@
 //! The hydrostatic figures of a body below a water plane z = level.
 
+use crate::Attitude;
 use crate::body::Body;
 use crate::hydrostatics::{FormCoefficients, Hydrostatics, Symmetry, VolumeForms, Waterplane};
 use crate::integrals::{Immersed, Wanted};
@@ -18,24 +19,25 @@ pub(crate) struct Floating<T> {
 
 /// The integrals below a level about (x0, y0, level), of one or both sides.
 pub(crate) struct Displaced<T> {
-    pub forms: [T; 3],
+    pub volume: T,
     pub moment: Vec3<T>,
     pub plane: [T; 6],
 }
 
-/// Volume, moments and waterplane below `level` about (x0, y0); `count` is 1, or 2 for both sides
-/// of a half body, and negative for normals that point inward. Volume and moments have the relative `accuracy`.
+/// Volume, moments and waterplane at an attitude about (x0, y0) in earth axes; `count` is 1, or 2
+/// for both sides of a half body, and negative for normals that point inward. Volume and moments
+/// have the relative `accuracy`.
 pub(crate) fn displaced<T: Real>(
     body: &Body<T>,
-    level: T,
+    attitude: Attitude<T>,
     origin: [T; 2],
     count: f64,
     accuracy: f64,
 ) -> Displaced<T> {
-    let sums = body.wanted_integrals(level, origin, Wanted::Displacement, accuracy).sums;
+    let sums = body.immersed_at(attitude, origin, Wanted::Displacement, accuracy).sums;
     let times = |x: T| x * count;
     Displaced {
-        forms: sums.forms.map(times),
+        volume: times(sums.forms[2]),
         moment: sums.moment.map(times),
         plane: sums.plane.map(times),
     }
@@ -48,21 +50,22 @@ pub fn hydrostatics<T: Real>(
     symmetry: Symmetry,
     density: f64,
 ) -> Hydrostatics<T> {
-    floating(body, level, symmetry, density).figures
+    floating(body, Attitude::upright(level), symmetry, density).figures
 }
 
-/// Figures of the body below z = `level`. The skin may be open at the level, above it and, for a
+/// Figures of the body at an attitude. The skin may be open at the level, above it and, for a
 /// half body, in the plane y = 0. Normals that all point inward give the same figures and are
 /// reported.
 pub(crate) fn floating<T: Real>(
     body: &Body<T>,
-    level: T,
+    attitude: Attitude<T>,
     symmetry: Symmetry,
     density: f64,
 ) -> Floating<T> {
-    let [x0, y0] = origin_of(body, symmetry).map(T::from);
-    let all = body.integrals(level, [x0, y0]);
-    of_integrals(body, [x0, y0], level, symmetry, density, &all)
+    let turned = attitude.turned(body);
+    let origin = origin_of(&turned, symmetry).map(T::from);
+    let all = body.immersed_at(attitude, origin, Wanted::All, body.quadrature_accuracy());
+    of_integrals(&turned, origin, attitude.level, symmetry, density, &all)
 }
 
 /// The origin of the integrals, in the water plane.
@@ -95,7 +98,7 @@ pub(crate) fn of_integrals<T: Real>(
     }
     let lowest = body.lowest(Vec3::of(0.0, 0.0, 1.0));
     let draft = lowest.map_or(T::zero(), |low| (level - low).max(T::zero()));
-    let cut = CoordinatePlane { axis: 2, level, epsilon: 1e-13 * body.size() };
+    let cut = CoordinatePlane::new(2, level, body.size());
     let mut product_moment = T::zero();
     let waterplane = waterline_extent(&all.waterline, cut).map(|extent| {
         let plane = sums.plane.map(|p| p * count);

@@ -68,16 +68,28 @@ impl<T: Real> Attitude<T> {
 
     /// The body in earth axes.
     pub fn turned(&self, body: &Body<T>) -> Body<T> {
-        let still = |a: T| a.re() == 0.0 && a.is_constant();
-        if still(self.trim) && still(self.heel) {
-            return body.clone();
+        match self.rotation() {
+            Some(place) => body.mapped(place, false),
+            None => body.clone(),
         }
+    }
+
+    /// The rotation from body axes to earth axes; `None` for an upright body.
+    pub(crate) fn rotation(&self) -> Option<impl Fn(Vec3<T>) -> Vec3<T> + use<T>> {
+        let still = |a: T| a.re() == 0.0 && a.is_constant();
         let (st, ct, sh, ch) = self.turns();
-        let place = |p: Vec3<T>| {
+        let place = move |p: Vec3<T>| {
             let (y, z) = (p.y * ch + p.z * sh, p.z * ch - p.y * sh);
             Vec3::new(p.x * ct + z * st, y, z * ct - p.x * st)
         };
-        body.mapped(place, false)
+        (!(still(self.trim) && still(self.heel))).then_some(place)
+    }
+
+    /// The earth axes in body axes.
+    pub(crate) fn axes(&self) -> [Vec3<T>; 3] {
+        let (st, ct, sh, ch) = self.turns();
+        let x = Vec3::new(ct, -sh * st, ch * st);
+        [x, Vec3::new(T::zero(), ch, sh), Vec3::new(-st, -sh * ct, ch * ct)]
     }
 
     fn turns(&self) -> (T, T, T, T) {
@@ -235,10 +247,9 @@ pub fn flotation<T: Real>(
     attitude: Attitude<T>,
     gravity_centre: Option<Vec3<T>>,
 ) -> Flotation<T> {
-    let turned = attitude.turned(body);
     let Water { density, gravity, symmetry, centimetre } = water;
     let Floating { figures: mut earth, product_moment, errors } =
-        floating(&turned, attitude.level, symmetry, density);
+        floating(body, attitude, symmetry, density);
     if attitude.heel.re().abs() > UPRIGHT {
         // Form coefficients relative to the box of a heeled waterline are meaningless: an immersed
         // deck corner is a sliver.
@@ -276,7 +287,9 @@ pub fn flotation<T: Real>(
         buoyancy_centre: earth.buoyancy_centre.map(|c| attitude.body_from(c)),
         flotation_centre: plane.map(|p| attitude.body_from(p.centre)),
         drafts,
-        freeboard: turned.freeboard(attitude.level, symmetry != Symmetry::None),
+        freeboard: attitude
+            .turned(&body.rims_alone())
+            .freeboard(attitude.level, symmetry != Symmetry::None),
         weight: earth.displacement * gravity,
         tpc: plane.map(|p| p.area * density * centimetre),
         mtc: plane.and_then(trimming),

@@ -2,7 +2,7 @@
 //! The flux of the field (0, 0, z - level) through the waterplane is zero, so the volume needs no
 //! lid. Whole cells of low degree use a rule that is exact for their polynomials. On strips cut by
 //! the water the outer parameter is w = a + (b - a) sin^2(pi s / 2), which removes the square roots
-//! at both ends from the integrand. Every integral is computed by two rules; the finer one is the
+//! at both ends from the integrand; panels have none. Every integral is computed by two rules; the finer one is the
 //! result, and the difference, approximately the error of the coarser one, its error estimate.
 //! Cells are halved, the worst first, until the sum of the estimates is small.
 
@@ -226,16 +226,17 @@ pub(crate) enum Wanted {
 }
 
 /// The integrals below `level`, each to about the relative `accuracy`; `origin` is (x0, y0), `size`
-/// the size of the body.
+/// the size of the body, `known` those over its other cells below the water.
 pub(crate) fn immersed<T: Real>(
     cells: &[Arc<PolynomialCell<T>>],
+    known: &HydrostaticIntegrals<T>,
     level: T,
     origin: [T; 2],
     size: f64,
     accuracy: f64,
     wanted: Wanted,
 ) -> Immersed<T> {
-    let cut = CoordinatePlane { axis: 2, level, epsilon: 1e-13 * size };
+    let cut = CoordinatePlane::new(2, level, size);
     let origin = Vec3::new(origin[0], origin[1], level);
     let one = |leaf: HalvedCell<T>| part(leaf, cut, origin);
     let whole = |(root, cell): (usize, &Arc<PolynomialCell<T>>)| {
@@ -249,7 +250,7 @@ pub(crate) fn immersed<T: Real>(
     let mut errors = [0.0; 6];
     let mut scale = [0.0f64; 6];
     {
-        let mut sums = HydrostaticIntegrals::zero();
+        let mut sums = *known;
         for part in parts.iter().flatten() {
             sums.add(&part.sums);
             for k in 0..6 {
@@ -312,12 +313,8 @@ pub(crate) fn immersed<T: Real>(
     #[cfg(test)]
     HALVED.with(|count| count.set(count.get() + halved));
     // Sum again: repeated subtraction accumulates rounding.
-    let mut all = Immersed {
-        sums: HydrostaticIntegrals::zero(),
-        errors: [0.0; 6],
-        waterline: Vec::new(),
-        leaves: Vec::new(),
-    };
+    let mut all =
+        Immersed { sums: *known, errors: [0.0; 6], waterline: Vec::new(), leaves: Vec::new() };
     for part in parts.into_iter().flatten() {
         all.sums.add(&part.sums);
         for k in 0..6 {
@@ -331,6 +328,9 @@ pub(crate) fn immersed<T: Real>(
 
 /// Quadrature points on cut strips: along w, and across.
 const OUTER: [usize; 2] = [14, 10];
+
+/// On those of panels, where the cut is a smooth function of w up to both ends: exact for plane ones.
+const OUTER_BILINEAR: [usize; 2] = [6, 4];
 
 fn part<T: Real>(
     leaf: HalvedCell<T>,
@@ -372,7 +372,7 @@ fn part<T: Real>(
 const MOST: usize = 12;
 
 /// Quadrature points on a whole line along a parameter: exact for second moments up to degree 6.
-fn points(degree: usize) -> usize {
+pub(crate) fn points(degree: usize) -> usize {
     match degree {
         0 | 1 => 3,
         d => (2 * d).clamp(5, MOST),
@@ -407,6 +407,7 @@ pub(crate) fn rule_points<T: Real>(strip: &Strip<T>, coarser: usize) -> [usize; 
     let outer_exact = !strip.is_cut() && exact_along(beside);
     let along = points_beside(inner, coarser, outer_exact);
     let across = match strip.is_cut() {
+        true if strip.is_bilinear() => OUTER_BILINEAR[coarser],
         true => OUTER[coarser],
         false => points_beside(beside, coarser, exact_along(inner)),
     };
@@ -415,7 +416,7 @@ pub(crate) fn rule_points<T: Real>(strip: &Strip<T>, coarser: usize) -> [usize; 
 
 /// The share of the length of a strip at a node of the rule across its lines, and its derivative.
 pub(crate) fn outer_share<T: Real>(strip: &Strip<T>, s: f64) -> (f64, f64) {
-    if strip.is_cut() {
+    if strip.is_cut() && !strip.is_bilinear() {
         let half = std::f64::consts::FRAC_PI_2;
         let (sine, cosine) = (libm::sin(half * s), libm::cos(half * s));
         (sine * sine, 2.0 * half * sine * cosine)

@@ -22,6 +22,7 @@ mod folds;
 mod hydrostatics;
 mod integrals;
 mod measures;
+mod moments;
 mod pulled;
 mod pulled_strip;
 mod section;

@@ -12,7 +12,7 @@ use crate::body::{Body, HullSide, fit_limits};
 use crate::cell::{CellFrame, PieceEnds, PolynomialCell, Sampling, SurfaceDivision, pulled_points};
 use crate::figures::{of_integrals, origin_of};
 use crate::hydrostatics::Symmetry;
-use crate::integrals::{HalvedCell, HydrostaticIntegrals, Immersed};
+use crate::integrals::{HalvedCell, HydrostaticIntegrals, Immersed, Wanted};
 use crate::pulled_strip::{PulledStrip, pulled_strip};
 use crate::strip::{CoordinatePlane, Strip, strips};
 use moldloft_num::{Adjoints, DerivativeTape, Dual, Real, Rev, Vec3};
@@ -122,10 +122,11 @@ fn pulled_nets(
     let mirrored = of.lengthwise.then(|| body.with_mirror_image(0));
     let whole = mirrored.as_ref().unwrap_or(body);
     let origin = origin_of(whole, of.symmetry);
-    let found = whole.integrals(0.0, origin);
+    let accuracy = whole.quadrature_accuracy();
+    let found = whole.wanted_integrals(0.0, origin, Wanted::All, accuracy);
     let mut pull = NetPull {
         body,
-        cut: CoordinatePlane { axis: 2, level: 0.0, epsilon: 1e-13 * whole.size() },
+        cut: CoordinatePlane::new(2, 0.0, whole.size()),
         origin: Vec3::of(origin[0], origin[1], 0.0),
         nets: (weights.iter())
             .map(|_| body.cells().iter().map(|c| vec![Vec3::zero(); c.net().len()]).collect())

@@ -14,7 +14,7 @@ const POINTS: usize = 16;
 /// water: the integrals of (z - level) dy and of (z - level)^2 / 2 dy along the section of the
 /// skin.
 pub fn section_area<T: Real>(body: &Body<T>, station: T, level: T) -> [T; 2] {
-    let cut = CoordinatePlane { axis: 0, level: station, epsilon: 1e-13 * body.size() };
+    let cut = CoordinatePlane::new(0, station, body.size());
     let (mut area, mut moment) = (T::zero(), T::zero());
     let mut found = Vec::new();
     for cell in body.cells() {

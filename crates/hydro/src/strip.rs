@@ -40,6 +40,16 @@ pub(crate) struct CoordinatePlane<T> {
     pub epsilon: f64,
 }
 
+/// Distance from a plane that does not matter, relative to the size of the body.
+pub(crate) const NEGLIGIBLE: f64 = 1e-13;
+
+impl<T> CoordinatePlane<T> {
+    /// The plane that cuts a body of that size.
+    pub fn new(axis: usize, level: T, size: f64) -> Self {
+        Self { axis, level, epsilon: NEGLIGIBLE * size }
+    }
+}
+
 /// Maximum depth of halving for cells whose height is monotonic in neither parameter.
 const DEEPEST: u32 = 11;
 
@@ -242,6 +252,11 @@ impl<T: Real> Strip<T> {
     /// True when the plane cuts it.
     pub fn is_cut(&self) -> bool {
         self.wet != Wet::All
+    }
+
+    /// True for a strip of a panel.
+    pub fn is_bilinear(&self) -> bool {
+        self.cell.degree() == [1, 1]
     }
 
     /// True when its lines are those of this whole cell.

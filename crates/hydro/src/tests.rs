@@ -1,9 +1,11 @@
 //! Closed forms.
 
-use crate::{Attitude, Body, HullSide, Water, flotation};
+use crate::integrals::{Immersed, Wanted};
+use crate::{Attitude, Body, HullSide, PolynomialCell, Water, flotation};
 use moldloft_num::{Dual, Jet, Real, SurfaceFormula, Vec3};
 use moldloft_testing::{Random, soak};
 use std::f64::consts::PI;
+use std::sync::Arc;
 
 /// The ellipsoid of half axes a, b, c about `at`; u from the lowest point up, v around.
 struct Ellipsoid<T> {
@@ -34,6 +36,10 @@ pub(crate) fn ellipsoid<T: Real>(axes: [T; 3], at: Vec3<T>, accuracy: f64) -> Bo
     Body::new(&[side], [], Vec::new(), size, accuracy).unwrap()
 }
 
+fn integrals<T: Real>(body: &Body<T>, attitude: Attitude<T>, origin: [T; 2]) -> Immersed<T> {
+    body.immersed_at(attitude, origin, Wanted::All, body.quadrature_accuracy())
+}
+
 #[test]
 fn a_sphere_is_measured() {
     let r = 1.7;
@@ -54,7 +60,7 @@ fn a_floating_sphere() {
     // Down to a sliver, at the level of an edge of cells, and all but under.
     for h in [0.01, 0.3, 0.9, 1.0, 1.5, 1.99] {
         let ball = ellipsoid([1.0; 3], Vec3::zero(), 1e-8);
-        let all = ball.integrals(h - 1.0, [0.0; 2]);
+        let all = integrals(&ball, Attitude::upright(h - 1.0), [0.0; 2]);
         let volume = PI * h * h * (3.0 - h) / 3.0;
         let plane = PI * h * (2.0 - h);
         let area = 2.0 * PI * h;
@@ -120,8 +126,8 @@ fn below_and_above_are_all() {
     let mut random = Random::new(3);
     for _ in 0..if soak() { 100 } else { 5 } {
         let level = random.between(-1.1, 1.1);
-        let [below, above] =
-            [body.integrals(level, [0.1, -0.2]), turned.integrals(-level, [0.1, 0.2])];
+        let [below, above] = [(&body, level, -0.2), (&turned, -level, 0.2)]
+            .map(|(body, level, y)| integrals(body, Attitude::upright(level), [0.1, y]));
         let off = below.sums.forms[2] + above.sums.forms[2] - whole.volume;
         let bound = below.errors[0] + above.errors[0] + 3.0 * whole.bounds[1];
         assert!(off.abs() <= bound && bound < 1e-6 * whole.volume, "{level}: {off} {bound}");
@@ -202,12 +208,44 @@ fn a_skin_with_an_infinite_tangent() {
     assert!(found.freeboard.unwrap().abs() < 1e-12);
 }
 
+fn lifted<T: Real>(body: &Body<f64>) -> Vec<Arc<PolynomialCell<T>>> {
+    body.cells().iter().map(|c| Arc::new(PolynomialCell::lifted(c))).collect()
+}
+
+/// Whole cells by their moments, and the body turned and integrated cell by cell.
+#[test]
+fn two_ways_to_the_integrals_of_a_turned_body_agree() {
+    let side = HullSide { surface: &Lumpy, reversed: true, open_edges: [false; 4], loops: None };
+    let lumpy = Body::new(&[side], [], Vec::new(), 3.0, 1e-7).unwrap();
+    let mut random = Random::new(17);
+    for seed in 0..if soak() { 300 } else { 6 } {
+        let mut dual = |a: f64, b: f64, k: usize| Dual::<3>::seeded(random.between(a, b), k);
+        let attitude = Attitude::of([dual(-0.8, 1.2, 0), dual(-0.5, 0.5, 1), dual(-3.0, 3.0, 2)]);
+        let origin = [dual(-9.0, 9.0, 0), dual(-9.0, 9.0, 1)];
+        let body = match seed % 2 {
+            0 => Body::of_cells(lifted(&lumpy), 3.0, 1e-7),
+            _ => ellipsoid([dual(1.0, 4.0, 0), dual(0.4, 2.0, 1), 1.0.into()], Vec3::zero(), 1e-7),
+        };
+        let found = integrals(&body, attitude, origin);
+        let turned = attitude.turned(&body);
+        let accuracy = body.quadrature_accuracy();
+        let other = turned.wanted_integrals(attitude.level, origin, Wanted::All, accuracy);
+        let errors = [0, 2].map(|k| found.errors[k] + other.errors[k]);
+        assert!(errors[0] < 1e-7 && errors[1] < 1e-6, "{seed}: {errors:?}");
+        for (a, b) in found.sums.numbers().into_iter().zip(other.sums.numbers()) {
+            let parts = (a.eps.iter().zip(b.eps)).map(|(a, b)| (a - b).abs() / (1.0 + b.abs()));
+            let off = parts.fold((a.re - b.re).abs() / (1.0 + b.re.abs()), f64::max);
+            assert!(off < 2e-6, "{seed}: {a:?} {b:?}");
+        }
+    }
+}
+
 #[test]
 fn derivatives_are_exact() {
     // A rise of the water, and a longer body.
     let [rise, longer] = [0, 1].map(|k| Dual::<2>::seeded([0.3, 5.0][k], k));
     let body = ellipsoid([longer, 2.0.into(), 1.5.into()], Vec3::zero(), 1e-9);
-    let all = body.integrals(rise, [Dual::from(0.0); 2]);
+    let all = integrals(&body, Attitude::upright(rise), [Dual::from(0.0); 2]);
     let (a, b, c, d): (f64, f64, f64, f64) = (5.0, 2.0, 1.5, 0.2);
     let volume = |d: f64| PI * b * c * (2.0 / 3.0 + d - d * d * d / 3.0);
     let v = all.sums.forms[2];
