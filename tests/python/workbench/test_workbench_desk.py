@@ -398,7 +398,7 @@ def test_random_acts(desk: Callable[..., DeskHand]) -> None:
         elif act == 6:
             d.click(int(rng.integers(1, 21)))
             d.key(str(rng.choice(["k", "f", "e", "Enter"])))
-        elif act == 10 and rng.integers(8) == 0:
+        elif act == 10 and rng.integers(30) == 0:
             lose(d)
         elif act == 7:
             d.key(str(rng.choice(["g", "[", "]", "n", "0", "Alt+ArrowUp", "Alt+Shift+ArrowLeft"])))
