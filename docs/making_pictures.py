@@ -259,7 +259,6 @@ def gallery(page: Any) -> None:
     page.mouse.up()
 
 
-
 if __name__ == "__main__":
     for name, make in (("boat.sdl", boat), ("bottle.sdl", bottle), ("propeller.sdl", propeller)):
         with opened_page("", SIZE, name=name) as opened:
