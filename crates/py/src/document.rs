@@ -6,7 +6,7 @@ use crate::diagnostics::PyDiagnostic;
 use crate::error::{model_error, plain_error, unknown_name};
 use crate::fair::Look;
 use crate::mesh::PyMesh;
-use crate::value::to_python;
+use crate::value::{arguments, to_python};
 use crate::work::{interruptible, interruptible_shared};
 use moldloft::budget::Budget;
 use moldloft::diag::Sources;
@@ -17,7 +17,7 @@ use moldloft::document::{
 };
 use moldloft::export::{SplinePatch, WriteOptions, format_named, spline_patches, stated_length};
 use moldloft::host::FileWorld;
-use moldloft::model::{Graph, Object};
+use moldloft::model::Object;
 use moldloft::num::{Order, Vec3};
 use moldloft::rows::{CurveRef, SurfaceRef, Value};
 use moldloft_parallel::prelude::*;
@@ -25,7 +25,7 @@ use numpy::ndarray::{Dim, Dimension, IntoDimension};
 use numpy::{PyArray, PyArray2, PyArray3, PyReadonlyArray1};
 use pyo3::prelude::*;
 use pyo3::sync::MutexExt;
-use pyo3::types::{PyBytes, PyDict, PyList};
+use pyo3::types::{PyBytes, PyDict};
 use std::ops::Range;
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -51,24 +51,6 @@ pub struct PyDocument {
 
 /// A B-spline patch: name, degrees, spans, control points, deviation.
 type PatchFacts<'py> = (String, [usize; 2], [usize; 2], Bound<'py, PyArray3<f64>>, f64);
-
-/// An argument as it was given; objects by name.
-fn argument<'py>(
-    py: Python<'py>,
-    graph: &Graph<f64>,
-    value: &Value<f64>,
-) -> PyResult<Bound<'py, PyAny>> {
-    match value {
-        Value::Object(key) => {
-            Ok(graph.get(*key).map(|object| object.name.to_string()).into_pyobject(py)?)
-        }
-        Value::List(items) => {
-            let items: PyResult<Vec<_>> = items.iter().map(|v| argument(py, graph, v)).collect();
-            Ok(PyList::new(py, items?)?.into_any())
-        }
-        other => to_python(py, other),
-    }
-}
 
 type Outcome<R> = Result<R, Vec<moldloft::diag::Diagnostic>>;
 
@@ -346,12 +328,7 @@ impl PyDocument {
         dict.set_item("shown", object.head.shown())?;
         dict.set_item("parents", names(&mut object.parents.iter().copied()))?;
         dict.set_item("children", names(&mut object.children.iter().copied()))?;
-        let arguments = PyDict::new(py);
-        for (field, value) in object.row.fields.iter().zip(&object.args) {
-            let name: &str = &field.name;
-            arguments.set_item(name, argument(py, graph, value)?)?;
-        }
-        dict.set_item("arguments", arguments)?;
+        dict.set_item("arguments", arguments(py, graph, object)?)?;
         Ok(dict)
     }
 

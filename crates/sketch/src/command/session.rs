@@ -251,8 +251,12 @@ pub struct SketchSession {
     /// True once UNDO or REDO was run.
     stepped: bool,
     /// The last wireframe, and its solids.
-    pub(super) fitted: Option<(super::solids::Wireframe, crate::solid::faces::Fitted)>,
+    pub(super) fitted: Option<(Wireframe, crate::solid::faces::Fitted)>,
 }
+
+/// Positions, edges and the plane of a section.
+pub(super) type Wireframe =
+    (Vec<moldloft_num::Vec3>, Vec<[usize; 2]>, Option<crate::CoordinateAxis>);
 
 /// Commands that only look: an open question stays open.
 const LOOKS: [&str; 12] = [

@@ -5,7 +5,7 @@ use super::args::Args;
 use super::draw::{require_lines, require_point};
 use super::info::{likely_aligns, suggested_in_turn, suggestions};
 use super::question::Question;
-use super::session::{CommandReply, MAX_POINTS, SketchSession};
+use super::session::{CommandReply, MAX_POINTS, SketchSession, Wireframe};
 use super::subject::{ReplySubject, Suggestion};
 use crate::solid::faces::{Fitted, Polygon, WireframeFit, fit, fit_plane};
 use crate::solid::merge::{self, Placed};
@@ -14,9 +14,6 @@ use moldloft_num::Vec3;
 use moldloft_syntax::number::plain;
 use std::collections::BTreeMap;
 use std::sync::Arc;
-
-/// Positions, edges and the plane of a section.
-pub(super) type Wireframe = (Vec<Vec3>, Vec<[usize; 2]>, Option<CoordinateAxis>);
 
 impl SketchSession {
     /// Positions of the points of a fully dimensioned object, or the missing dimensions.
