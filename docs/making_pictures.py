@@ -26,9 +26,14 @@ def settle(page: Any) -> None:
 
 
 def shown(page: Any, name: str) -> None:
-    """The page as it is."""
-    settle(page)
+    """The page as it is, the pointer aside."""
     page.mouse.move(4, 4)
+    held(page, name)
+
+
+def held(page: Any, name: str) -> None:
+    """The page while the pointer holds something."""
+    settle(page)
     picture(page, name, WIDTH)
 
 
@@ -254,8 +259,7 @@ def gallery(page: Any) -> None:
     page.mouse.move(x, y)
     page.mouse.down()
     page.mouse.move(x + 20 * depth["unit"][0], y + 20 * depth["unit"][1], steps=4)
-    settle(page)
-    picture(page, "board-arrows", WIDTH)
+    held(page, "board-arrows")
     page.mouse.up()
 
 
