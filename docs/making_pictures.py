@@ -26,9 +26,14 @@ def settle(page: Any) -> None:
 
 
 def shown(page: Any, name: str) -> None:
-    """The page as it is."""
-    settle(page)
+    """The page as it is, the pointer aside."""
     page.mouse.move(4, 4)
+    held(page, name)
+
+
+def held(page: Any, name: str) -> None:
+    """The page while the pointer holds something."""
+    settle(page)
     picture(page, name, WIDTH)
 
 
@@ -219,6 +224,43 @@ def dam(page: Any) -> None:
     page.keyboard.press("Enter")
     drawn(page)
     shown(page, "board-dam")
+    gallery(page)
+
+
+def gallery(page: Any) -> None:
+    """A gallery through the dam: a section on its near face, sunk, and its arrows."""
+    page.keyboard.press("v")
+    while True:
+        page.keyboard.press("b")
+        if drawn(page)["face"]["name"] == "1":
+            break
+    shown(page, "board-face")
+    page.keyboard.press("s")
+    axes = drawn(page)["drawn"]["axes"]
+    for x, z in ((6, 6), (22, 6.4), (21.8, 30), (6, 30), (6, 6)):
+        pressed(page, tuple(x * axes["X"][k] + z * axes["Z"][k] for k in (0, 1)))
+    page.locator("svg.paper").focus()
+    page.keyboard.press("Tab")
+    for value in ("16", "24"):
+        drawn(page)
+        page.keyboard.type(value)
+        page.keyboard.press("Enter")
+    drawn(page)
+    shown(page, "board-section")
+    page.keyboard.press("k")
+    page.keyboard.type("20")
+    page.keyboard.press("Enter")
+    drawn(page)
+    page.keyboard.press("v")
+    # The arrow of the depth, dragged to the far face.
+    found = drawn(page)
+    depth = next(h for h in found["handles"] if h["name"].startswith("POCKET1."))
+    x, y = (a + b for a, b in zip(found["origin"], depth["at"], strict=True))
+    page.mouse.move(x, y)
+    page.mouse.down()
+    page.mouse.move(x + 20 * depth["unit"][0], y + 20 * depth["unit"][1], steps=4)
+    held(page, "board-arrows")
+    page.mouse.up()
 
 
 if __name__ == "__main__":

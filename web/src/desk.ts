@@ -41,14 +41,19 @@ interface Session {
   source: Facts
   tolerance: number
   key?: string
-  /** The name under which the result is in the text, and the statements. */
-  applied?: { name: string; text: string }
+}
+
+/** The name under which the result is in the text, and the statements. */
+interface Applied {
+  name: string
+  text: string
 }
 
 /** What a step of the history restores. */
 interface Kept {
   session: Session | null
   log: string[]
+  applied: Applied | null
 }
 
 /** A pointer that is down: on a point, on nothing, or only there to move the sheet. */
@@ -108,6 +113,7 @@ export class Desk {
   private session: Session | null = null
   private facts: DeskFacts | null = null
   private log: string[] = []
+  private applied: Applied | null = null
   private shownLine = 0
   private tool = 'select'
   private chosen: Chosen = { point: 0, anchor: -1 }
@@ -249,7 +255,7 @@ export class Desk {
       const before = this.kept
       const found = await this.link.tell({ kind: 'desk_open', ...what, line: 0 })
       this.session = { source: found.source, tolerance: found.tolerance, key: found.key }
-      ;[this.log, this.shownLine] = [[], 0]
+      ;[this.log, this.shownLine, this.applied] = [[], 0, null]
       this.stepped(`Open ${found.title}`, before)
       this.chosen = { point: found.detail.points[0], anchor: -1 }
       this.slider.value = '0'
@@ -268,7 +274,7 @@ export class Desk {
     return this.later(async () => {
       let before = this.kept
       this.session = { source: kept.source, tolerance: kept.tolerance }
-      ;[this.log, this.shownLine] = [[], 0]
+      ;[this.log, this.shownLine, this.applied] = [[], 0, null]
       this.stepped(`Go on with ${kept.source.name}`, before)
       for (const command of kept.log as string[]) {
         before = this.kept
@@ -288,9 +294,10 @@ export class Desk {
       const before = this.kept
       const found = await this.carriedOut(command)
       this.log = found.log
-      this.stepped(command, before)
       this.say('')
       this.take(found as DeskFacts)
+      if (this.applied) await this.written(command, before, this.applied)
+      else this.stepped(command, before)
       return true
     }).then((x) => x === true)
   }
@@ -334,7 +341,7 @@ export class Desk {
   }
 
   private get kept(): Kept {
-    return { session: this.session, log: this.log }
+    return { session: this.session, log: this.log, applied: this.applied }
   }
 
   /** A step of the page's history, from the state before to the present one. */
@@ -347,9 +354,9 @@ export class Desk {
     })
   }
 
-  private restore({ session, log }: Kept): void {
+  private restore({ session, log, applied }: Kept): void {
     const fit = session !== this.session
-    ;[this.session, this.log] = [session, log]
+    ;[this.session, this.log, this.applied] = [session, log, applied]
     this.decided++
     if (!session) this.facts = null
     void this.later(async () => {
@@ -370,9 +377,7 @@ export class Desk {
 
   private async apply(): Promise<void> {
     await this.later(async () => {
-      const { session } = this
-      if (!session) return
-      await this.editor.synced()
+      if (!this.session) return
       const stem = String(this.facts!.title)
         .replace(/\.\w+$/, '')
         .replace(/\W+/g, '_')
@@ -380,13 +385,33 @@ export class Desk {
       const taken = (name: string) => model.objects.some((o) => o.name === name)
       let name = taken(stem) ? `${stem}_faired` : stem
       for (let k = 2; taken(name); k++) name = `${stem}_faired_${k}`
-      if (session.applied) name = session.applied.name
-      const answer = await this.ask('desk_apply', { name, applied: session.applied?.text ?? '' })
-      session.applied = { name, text: answer.applied }
-      this.editor.apply(answer.edits, answer.version, `Apply ${name}`)
-      await this.editor.synced()
-      this.say(`${name} is in the text`)
+      if (this.applied) name = this.applied.name
+      const old = { name, text: this.applied?.text ?? '' }
+      if (await this.written(`Apply ${name}`, this.kept, old, true)) this.say(`${name} is in the text`)
     })
+  }
+
+  /** The result in the text, as one step with the act that made it; false if the text stays. */
+  private async written(act: string, before: Kept, { name, text }: Applied, anew = false): Promise<boolean> {
+    await this.editor.synced()
+    if (!anew && !this.editor.text.includes(text)) {
+      // Statements that were edited by hand are left alone.
+      this.applied = null
+      this.stepped(act, before)
+      return false
+    }
+    try {
+      const { applied, edits, version } = await this.ask('desk_apply', { name, applied: text })
+      this.applied = { name, text: applied }
+      this.stepped(act, before)
+      if (anew || applied !== text) this.editor.apply(edits, version, act, [], true)
+      await this.editor.synced()
+      return true
+    } catch (error) {
+      if (!anew) this.stepped(act, before)
+      this.say(`the text stays: ${(error as Error).message}`)
+      return false
+    }
   }
 
   private async save(name: string): Promise<void> {
@@ -428,7 +453,7 @@ export class Desk {
   private setSlider(limit: number): void {
     if (!this.session) return
     this.value.value = shown(limit).replace('−', '-')
-    if (limit > 0) this.slider.value = String(Math.log10(limit / this.session.tolerance))
+    if (limit > 0) this.slider.value = String(Math.log10(limit / this.middle))
     this.slider.setAttribute('aria-valuetext', `${shown(limit)} ${this.session.source.unit ?? ''}`.trim())
   }
 
@@ -620,8 +645,18 @@ export class Desk {
 
   // The tolerance.
 
+  /** The tolerance at the middle of the slider. */
+  private get middle(): number {
+    const { tolerance, source } = this.session!
+    const extent = [0, 1, 2].map((k) => {
+      const all = (source.points as number[][]).map((p) => p[k])
+      return Math.max(...all) - Math.min(...all)
+    })
+    return tolerance || 1e-4 * Math.max(...extent)
+  }
+
   private tolerance(): number {
-    return Number((this.session!.tolerance * 10 ** Number(this.slider.value)).toPrecision(3))
+    return Number((this.middle * 10 ** Number(this.slider.value)).toPrecision(3))
   }
 
   private command(value: number): string {
@@ -839,7 +874,9 @@ export class Desk {
     else if (key === 'o') this.use('side')
     else if (key === 'w') this.use('weight')
     else if (key === '[' || key === ']')
-      void this.run(this.command(Number((this.facts.limit * (key === ']' ? 1.1 : 1 / 1.1)).toPrecision(3))))
+      void this.run(
+        this.command(Number(((this.facts.limit || this.middle) * (key === ']' ? 1.1 : 1 / 1.1)).toPrecision(3))),
+      )
     else if (key === 'g') this.switchGoal()
     else if (key === 'n') this.showLine(this.shownLine + (e.shiftKey ? -1 : 1))
     else if (key === 'v') this.use('select')

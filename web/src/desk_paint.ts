@@ -32,6 +32,8 @@ export interface Detail {
   knuckles: number[]
   released: number[]
   closed: boolean
+  /** True if the points are control points. */
+  control: boolean
   certificate: { state: 'draft' | 'certified' | 'kept' | 'broken'; words: string }
 }
 
@@ -168,6 +170,7 @@ export class DeskPainter {
     )
     if (d.last) parts.push(path(join(d.last.map(sheet.to)), { class: 'line last' }))
     parts.push(path(join(feet), { class: 'line after' }))
+    if (d.control) parts.push(path(join([...this.places, ...(d.closed ? [this.places[0]] : [])]), { class: 'polygon' }))
     for (const shape of f.shapes)
       if (shape.line === d.line && shape.ends) parts.push(...this.span(d, shape.ends, shape.text.split('=')[0]))
     if (f.span && f.span[0] === d.line) parts.push(...this.span(d, [f.span[1], f.span[2]], 'range'))

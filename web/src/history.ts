@@ -180,7 +180,7 @@ export class Steps {
         if (many > 0) step.back()
         else step.again()
         this.onChange()
-        gone++
+        if (many > 0 || !this.ahead.at(-1)?.joined) gone++
         continue
       }
       if (!step || !(many > 0 ? undo : redo)(step.of)) break

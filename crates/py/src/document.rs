@@ -6,7 +6,7 @@ use crate::diagnostics::PyDiagnostic;
 use crate::error::{model_error, plain_error, unknown_name};
 use crate::fair::Look;
 use crate::mesh::PyMesh;
-use crate::value::to_python;
+use crate::value::{arguments, to_python};
 use crate::work::{interruptible, interruptible_shared};
 use moldloft::budget::Budget;
 use moldloft::diag::Sources;
@@ -328,6 +328,7 @@ impl PyDocument {
         dict.set_item("shown", object.head.shown())?;
         dict.set_item("parents", names(&mut object.parents.iter().copied()))?;
         dict.set_item("children", names(&mut object.children.iter().copied()))?;
+        dict.set_item("arguments", arguments(py, graph, object)?)?;
         Ok(dict)
     }
 

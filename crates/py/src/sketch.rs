@@ -290,6 +290,31 @@ impl PySketch {
         Ok(replies.into_iter().map(|r| answer(py, r)).collect())
     }
 
+    /// The answers to lines of a text, each with the index of its line.
+    fn run_lines<'py>(
+        &self,
+        py: Python<'py>,
+        lines: Vec<String>,
+    ) -> PyResult<Vec<(usize, Answer<'py>)>> {
+        let replies = self.long(py, move |s| -> Vec<(usize, CommandReply)> {
+            let run = |(k, line): (usize, &String)| {
+                s.run_line(line).into_iter().map(move |reply| (k, reply))
+            };
+            lines.iter().enumerate().flat_map(run).collect()
+        })?;
+        Ok(replies.into_iter().map(|(k, reply)| (k, answer(py, reply))).collect())
+    }
+
+    /// Keeps no steps to undo from now on.
+    fn forgo_steps(&self, py: Python<'_>) {
+        self.lock(py).forgo_steps();
+    }
+
+    /// True once UNDO or REDO was run.
+    fn stepped(&self, py: Python<'_>) -> bool {
+        self.lock(py).stepped()
+    }
+
     /// Begins a run of lines.
     fn hold(&self, py: Python<'_>) {
         self.lock(py).hold();

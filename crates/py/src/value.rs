@@ -75,6 +75,38 @@ pub fn to_python<'py>(py: Python<'py>, value: &Value<f64>) -> PyResult<Bound<'py
     })
 }
 
+/// The arguments of an object by name, as they were given.
+pub fn arguments<'py>(
+    py: Python<'py>,
+    graph: &moldloft::model::Graph<f64>,
+    object: &moldloft::model::Object<f64>,
+) -> PyResult<Bound<'py, pyo3::types::PyDict>> {
+    let dict = pyo3::types::PyDict::new(py);
+    for (field, value) in object.row.fields.iter().zip(&object.args) {
+        let name: &str = &field.name;
+        dict.set_item(name, argument(py, graph, value)?)?;
+    }
+    Ok(dict)
+}
+
+/// An argument as it was given; objects by name.
+fn argument<'py>(
+    py: Python<'py>,
+    graph: &moldloft::model::Graph<f64>,
+    value: &Value<f64>,
+) -> PyResult<Bound<'py, PyAny>> {
+    match value {
+        Value::Object(key) => {
+            Ok(graph.get(*key).map(|object| object.name.to_string()).into_pyobject(py)?)
+        }
+        Value::List(items) => {
+            let items: PyResult<Vec<_>> = items.iter().map(|v| argument(py, graph, v)).collect();
+            Ok(PyList::new(py, items?)?.into_any())
+        }
+        other => to_python(py, other),
+    }
+}
+
 /// A block as an array (ni, nj, nk, 3), or of numbers (ni, nj, nk).
 fn block<'py>(py: Python<'py>, layers: &[Value<f64>]) -> PyResult<Bound<'py, PyAny>> {
     let nk = layers.len();

@@ -344,7 +344,9 @@ class Desk:
 
     @property
     def suggested(self) -> float:
-        """A suggested tolerance: the scatter of points about their neighbours, two digits."""
+        """The object's own tolerance, or the scatter of points about their neighbours."""
+        if self.source.tolerance is not None:
+            return self.source.tolerance
         found = [_scatter(np.array(self.source.points)[list(o.points)]) for o in self.source.lines]
         most = float(np.median([x for x in found if x > 0] or [0.0]))
         extent = float(np.ptp(np.array(self.source.points), axis=0).max())

@@ -62,6 +62,7 @@ class Task:
     closed: bool = False
     span: tuple[int, int] | None = None
     draft: bool = False
+    options: tuple[tuple[str, Any], ...] = ()
 
 
 @dataclass(frozen=True)
@@ -204,7 +205,7 @@ def faired(
         for own, at in zip(line.points, fairing.points, strict=True):
             points[own] = place(at)
         curves.append(_curve(state, k, asked, fairing))
-        found = (*fairing.findings, *fairing.corrected)
+        found = () if source.control else (*fairing.findings, *fairing.corrected)
         suspects += [_suspect(source.motion, state, line.points[f.index], k, f) for f in found]
     suspects.sort(key=lambda s: (s.line, s.point))
     return DeskResult(state, tuple(curves), tuple(points), tuple(suspects), tuple(parts))
@@ -225,11 +226,16 @@ def task(source: DeskSource, state: DeskState, k: int, draft: bool = False) -> T
     if state.span is not None and span is None:
         # Outside of the range nothing moves, other lines neither.
         span = (0, 0)
+    fixed = own(state.fixed)
+    if source.control and span is not None:
+        # Of the curve through control points, those inside of the range are free.
+        inside = range(span[0], span[1] + 1)
+        fixed = tuple(k for k in range(len(line.points)) if k in fixed or k not in inside)
     return Task(
         points=tuple(state.points[p] for p in line.points),
         width=source.width,
         tolerances=tuple(state.limit(p, k) for p in line.points),
-        fixed=own(state.fixed),
+        fixed=fixed,
         breaks=own(state.knuckles),
         released=own(state.released),
         shape=tuple(text for of, text in state.shapes if of == k),
@@ -237,7 +243,8 @@ def task(source: DeskSource, state: DeskState, k: int, draft: bool = False) -> T
         motion=source.motion,
         closed=line.closed,
         span=span,
-        draft=draft and span is None,
+        draft=draft and span is None and not source.control,
+        options=source.options,
     )
 
 
@@ -245,7 +252,7 @@ def task(source: DeskSource, state: DeskState, k: int, draft: bool = False) -> T
 def fair_line(asked: Task) -> Fairing:
     """A line faired separately."""
     points = np.array(asked.points)[:, : asked.width]
-    if asked.span is not None:
+    if asked.span is not None and not asked.options:
         return _ranged(asked, points)
     return fair_curve(
         points,
@@ -258,6 +265,7 @@ def fair_line(asked: Task) -> Fairing:
         goal=asked.goal,
         motion=asked.motion,
         draft=asked.draft,
+        **{"as_" if name == "as" else name: value for name, value in asked.options},
     )
 
 

@@ -81,6 +81,15 @@ class DeskSource:
     """Name and text of the table that the points are from."""
     breaks: tuple[int, ...] = ()
     """Points at which an object of a model has corners."""
+    options: tuple[tuple[str, Any], ...] = ()
+    """Arguments of the object beside points and marks: the role of the points, knots, degree."""
+    tolerance: float | None = None
+    """The tolerance of the object, if it has one."""
+
+    @property
+    def control(self) -> bool:
+        """True if the points are control points, which the curve does not pass through."""
+        return ("as", "control") in self.options
 
     @property
     def grid(self) -> tuple[int, int]:
@@ -119,6 +128,11 @@ class DeskSource:
             objects=tuple(map(str, given.get("objects") or ())),
             table=None if table is None else (str(table[0]), str(table[1])),
             breaks=tuple(int(k) for k in given.get("breaks") or ()),
+            options=tuple(
+                (str(name), tuple(value) if isinstance(value, (list, tuple)) else value)
+                for name, value in given.get("options") or ()
+            ),
+            tolerance=given.get("tolerance"),
         )
         return source._checked()
 
@@ -199,7 +213,7 @@ class DeskSource:
 
     @staticmethod
     def of_object(model: Model, name: str) -> DeskSource:
-        """A curve or a surface of a model; for fair objects and splines their defining points.
+        """A curve or a surface of a model; for fair curves and B-splines their own points.
 
         Parameters
         ----------
@@ -210,6 +224,8 @@ class DeskSource:
         """
         document = model._document
         facts = document.object(name) if document.has(name) else None
+        if facts is not None and (made := _controlled(model, name, facts)) is not None:
+            return made._checked()
         own = [] if facts is None else [p for p in facts["parents"] if is_point(document, p)]
         kind = "" if facts is None else facts["kind"]
         alone = len(set(own)) == len(own) > 4 and facts is not None and facts["parents"] == own
@@ -223,6 +239,51 @@ class DeskSource:
         if found.breaks:
             source = DeskSource.from_dict({**source.as_dict(), "breaks": found.breaks})
         return source
+
+
+_PLAIN = {"degree": 3, "mode": "optimum", "goal": "near", "spacing": "auto", "ends": None}
+"""Arguments that are left out of a text if they have these values."""
+
+_CARRIED = ("as", "degree", "knots", "weights", "period", "measure", "ends", "bound", "mode")
+"""Arguments of control points that a desk keeps as they are."""
+
+_OWN = ("points", "tolerance", "closed", "breaks", "goal")
+"""Arguments of control points that are its points and its marks."""
+
+
+def _controlled(model: Model, name: str, facts: dict[str, Any]) -> DeskSource | None:
+    """The control points of a B-spline of a model; None for other objects."""
+    given = {k: v for k, v in facts["arguments"].items() if v is not None}
+    kind = facts["kind"]
+    spline = kind in ("BCurve", "NURBCurve")
+    if not spline and (kind != "FairCurve" or given.get("as") != "control"):
+        return None
+    given = {k: v for k, v in given.items() if np.ndim(v) or v not in (_PLAIN.get(k), 0)}
+    rows = given["points"]
+    data = [model.eval(row) if isinstance(row, str) else row for row in rows]
+    count, degree = len(rows), int(given.get("degree", 3))
+    if spline:
+        degree = min(degree, count - 1)
+        inner = np.arange(1, count - degree) / (count - degree)
+        clamped = np.concatenate([np.zeros(degree + 1), inner, np.ones(degree + 1)])
+        given = {"knots": clamped, **given, "as": "control", "degree": degree, "tolerance": 0.0}
+    steps = np.linalg.norm(np.diff(data, axis=0), axis=1)
+    if set(given) - {*_CARRIED, *_OWN} or count < degree + 2 or not steps.all():
+        return None
+    if given.get("goal", "near") != "near":
+        return None
+    options = [
+        (k, tuple(map(float, v)) if np.ndim(v) else int(v) if k == "degree" else v)
+        for k in _CARRIED
+        if (v := given.get(k)) is not None and (np.ndim(v) or v != _PLAIN.get(k))
+    ]
+    return DeskSource(
+        "curves", name, places(data), 3,
+        (DeskLine(name, tuple(range(count)), bool(given.get("closed"))),),
+        objects=tuple(row if isinstance(row, str) else "" for row in rows),
+        breaks=tuple(int(k) - 1 for k in given.get("breaks", ())),
+        options=tuple(options), tolerance=float(given.get("tolerance", 0.0)),
+    )  # fmt: skip
 
 
 def is_point(document: Any, name: str) -> bool:

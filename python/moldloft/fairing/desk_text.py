@@ -48,6 +48,12 @@ def _place(p: Sequence[float]) -> str:
     return "{" + ", ".join(_number(c) for c in p) + "}"
 
 
+def _value(value: Any) -> str:
+    if isinstance(value, str):
+        return f'"{value}"'
+    return _number(value) if np.ndim(value) == 0 else _list(map(_number, value))
+
+
 def _list(items: Iterable[Any]) -> str:
     return "{" + ", ".join(map(str, items)) + "}"
 
@@ -97,12 +103,12 @@ def _curves(source: DeskSource, state: DeskState, result: DeskResult, name: str)
     for k, line in enumerate(state.lines):
         called = name if alone else _called(name, line.name, taken)
         asked = task(source, state, k)
-        if asked.span is not None:
+        if asked.span is not None and not source.control:
             out.append(_as_it_is(called, result.curves[k].after))
             continue
         points = [
             source.objects[p]
-            if source.objects and asked.points[i] == source.points[p]
+            if source.objects and source.objects[p] and asked.points[i] == source.points[p]
             else _place(asked.points[i])
             for i, p in enumerate(line.points)
         ]
@@ -122,6 +128,7 @@ def _curves(source: DeskSource, state: DeskState, result: DeskResult, name: str)
             options.append(f"shape = {{{quoted}}}")
         if asked.closed:
             options.append("closed = 1")
+        options += [f"{word} = {_value(value)}" for word, value in source.options]
         out.append(f"FairCurve {called}({', '.join([_list(points), limit, *options])});")
     return out
 

@@ -43,6 +43,9 @@ _NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)(e[-+]?\d+)?\s*[a-z]*", re.IGNORECA
 #: A dimension that ACCEPT ALL has taken, and its points.
 _TAKEN = re.compile(r"(E\d+) [A-Z] (\d+) TO (\d+) = ")
 
+#: The code of a wireframe that several solids fit.
+_SEVERAL = 702
+
 #: Commands in the next step that a reply names.
 _FIX = re.compile(r"\b(?:WELD|TYPE|ALIGN|DELETE) [A-Z0-9 ]*[A-Z0-9]")
 
@@ -68,15 +71,18 @@ class Board:
         self._faults: list[dict[str, Any]] = []
         self._left = False
         self._asked: list[list[int]] | None = None
+        self._steps = False
         self._session = self._new()
         self._guesses = self._new()
         self._guessed: list[str] = []
         self._object: str | None = None
         self._placed: tuple[Any, dict[str, Any] | None] = (None, None)
 
-    def _new(self) -> _core.SketchSession:
+    def _new(self, steps: bool = False) -> _core.SketchSession:
         session = _core.SketchSession(self._folder)
         session.confine(True)
+        if not steps:
+            session.forgo_steps()
         return session
 
     # -- the text ----------------------------------------------------------------------------
@@ -89,14 +95,19 @@ class Board:
         while old and not old[-1].strip():
             old.pop()
         if new[: len(old)] != old or self._left:
-            self._session, self._faults, old = self._new(), [], []
-        for k, line in enumerate(new[len(old) :], len(old) + 1):
-            for reply in map(Reply.from_row, self._session.run_line(line)):
-                if not reply.is_error:
-                    self._asked = _face(reply.text)
-                else:
-                    fault = {"line": k, "text": reply.text, "next": reply.next}
-                    self._faults.append({**fault, "code": reply.code})
+            self._session, self._steps, self._faults, old = self._new(), False, [], []
+        rows = self._session.run_lines(new[len(old) :])
+        if self._session.stepped() and not self._steps:
+            # UNDO in a text takes back steps, which are kept of such a text alone.
+            self._session, self._steps, self._faults, old = self._new(True), True, [], []
+            rows = self._session.run_lines(new)
+        for k, row in rows:
+            reply = Reply.from_row(row)
+            if not reply.is_error:
+                self._asked = _face(reply.text)
+            else:
+                fault = {"line": len(old) + k + 1, "text": reply.text, "next": reply.next}
+                self._faults.append({**fault, "code": reply.code})
         # A question at the end of a text, such as which of several solids is meant, is left open:
         # the drawing is shown, and lines that answer it are run with the whole text.
         self._left = self._session.asks()
@@ -523,8 +534,10 @@ class Board:
             out["exact"] = not any(data["missing"].values())
             out["made"] = self._made(data)
             taken = self._taken()
+            several = out["made"]
             if not out["made"]:
                 for reply in map(Reply.from_row, session.run_line("GENERATE FACES")):
+                    several |= reply.code == _SEVERAL
                     if reply.is_error:
                         out["why"] = {"text": reply.text, "code": reply.code}
             data = self._data()
@@ -543,6 +556,8 @@ class Board:
             if not (out["made"] and out["exact"]):
                 out["names"] = []
             # Of a wireframe that several solids fit, all are shown.
+            if not several:
+                return
             with contextlib.suppress(Error):
                 fits = [_shape(*fit) for fit in session.candidates(name, False)]
                 out["candidates"] = fits if len(fits) > 1 else []

@@ -319,6 +319,7 @@ def _detail(desk: Desk, result: DeskResult, k: int) -> dict[str, Any]:
         "knuckles": [p for p in curve.points if p in state.knuckles],
         "released": [p for p in curve.points if p in state.released],
         "closed": curve.after.closed,
+        "control": desk.source.control,
         "certificate": _certificate(curve),
     }
 

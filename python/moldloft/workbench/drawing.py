@@ -70,6 +70,9 @@ FILES = Room(
     patience=10.0,
 )
 
+#: Seconds in which a process starts on a busy machine.
+_STARTING = 60.0
+
 Say = Callable[["str | bytes"], None]
 
 
@@ -99,8 +102,9 @@ class Drawing:
         self.room = room
         self._text = text
         self._engine = Engine(
-            name, folder, library, memory=memory, budget=room.patience * budget, work=room.work
-        )
+            name, folder, library, memory=memory, budget=room.patience * budget, work=room.work,
+            starting=_STARTING,
+        )  # fmt: skip
         self._stopped = False
         self._known: tuple[str, int] | None = None
         self._waiting: list[tuple[int, dict[str, Any], Say]] = []

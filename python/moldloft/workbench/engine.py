@@ -55,6 +55,8 @@ class Engine:
     work
         Task of the process: ``"model"``, ``"board"`` for the drawing board of a sketch,
         ``"desk"`` for the fairing desk, or ``"files"`` for exports.
+    starting
+        Further seconds for the first request: those of the imports on a busy machine.
     """
 
     def __init__(
@@ -66,9 +68,11 @@ class Engine:
         memory: int = 8 << 30,
         budget: float = 20.0,
         work: str = "model",
+        starting: float = 0.0,
     ) -> None:
         self._arguments = [work, str(memory), name, folder or "", *library]
-        self._budget = budget
+        self._budget, self._starting = budget, starting
+        self._fresh = False
         self._process: asyncio.subprocess.Process | None = None
 
     @property
@@ -88,6 +92,7 @@ class Engine:
             env={**os.environ, "PYTHONUNBUFFERED": "1"},
         )
         _widen(self._process)
+        self._fresh = True
         await self._send(text.encode())
 
     async def end(self) -> None:
@@ -108,15 +113,17 @@ class Engine:
             If there is no answer.
         """
         await self._send(request)
+        seconds = self._budget + (self._starting if self._fresh else 0.0)
+        self._fresh = False
         try:
-            return await asyncio.wait_for(asyncio.shield(reading := self._reading()), self._budget)
+            return await asyncio.wait_for(asyncio.shield(reading := self._reading()), seconds)
         except TimeoutError:
             await self._send(_CANCEL)
         try:
             return await asyncio.wait_for(reading, 2.0)
         except TimeoutError:
             await self.end()
-            raise EngineLostError(f"no answer within {self._budget:g} s") from None
+            raise EngineLostError(f"no answer within {seconds:g} s") from None
 
     def cancel(self) -> None:
         """Have the request that runs end early; its answer comes as always."""

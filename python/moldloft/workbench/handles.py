@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -122,12 +123,19 @@ def drawn_handles(
     out: list[dict[str, Any]] = []
     measures = {d["name"]: d["measures"].split() for d in data["dimensions"]}
 
-    def middle(axis: str, point: int) -> list[float] | None:
-        members = next((m for a, m, _ in planes if a == axis and point in m), [point])
-        at = [places[m] for m in members if m in places]
+    planes_of = {(axis, p): tuple(own) for axis, own, _ in reversed(planes) for p in own}
+
+    @cache
+    def mean(points: tuple[int, ...]) -> list[float] | None:
+        at = [places[m] for m in points if m in places]
         return np.mean(at, axis=0).tolist() if at and np.isfinite(at).all() else None
 
+    def middle(axis: str, point: int) -> list[float] | None:
+        return mean(planes_of.get((axis, point), (point,)))
+
     for mark in marks:
+        if len(out) == _MOST:
+            return out
         words = measures.get(mark["name"], [])
         if mark["reference"] or not mark["value"]:
             continue

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import json
 import struct
 import sys
@@ -9,6 +10,9 @@ from collections.abc import Callable
 from typing import Any
 
 __all__ = ["answer_frames"]
+
+#: Objects that are made before garbage is looked for: more than a reply is made of.
+GARBAGE = 100_000
 
 #: Cancelled work has no answer of its own.
 _SILENT = "cancel"
@@ -41,6 +45,7 @@ def answer_frames(
             resource.setrlimit(resource.RLIMIT_FSIZE, (0, 0))
         if sys.platform == "linux":
             resource.setrlimit(resource.RLIMIT_AS, (memory, memory))
+    gc.set_threshold(GARBAGE)
     given, taken = sys.stdin.buffer, sys.stdout.buffer
     first = True
     while len(head := given.read(4)) == 4:

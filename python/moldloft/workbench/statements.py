@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 from moldloft import _core
 
@@ -45,23 +46,29 @@ class Statement:
 
     verb: str
     """Its command in full; empty for an answer to a question."""
-    tokens: tuple[Token, ...]
+    words: Sequence[tuple[str, int, int]]
+    """Its words as written, without quotes, and their spans."""
     last: bool
     """True if it is the last one of its line."""
+
+    @cached_property
+    def tokens(self) -> tuple[Token, ...]:
+        """Its words."""
+        return tuple(Token(*word) for word in self.words)
 
     @property
     def start(self) -> int:
         """Start offset."""
-        return self.tokens[0].start
+        return self.words[0][1]
 
     @property
     def end(self) -> int:
         """End offset."""
-        return self.tokens[-1].end
+        return self.words[-1][2]
 
     def word(self, k: int) -> str:
         """The word with an index; empty beyond the end."""
-        return self.tokens[k].upper if k < len(self.tokens) else ""
+        return self.words[k][0].upper() if k < len(self.words) else ""
 
 
 def statements(text: str) -> list[Statement]:
@@ -71,8 +78,7 @@ def statements(text: str) -> list[Statement]:
     ['POINT', 'LINE']
     """
     return [
-        Statement(verb, tuple(Token(*word) for word in words), last)
-        for verb, words, last in _core.SketchSession.commands(text)
+        Statement(verb, words, last) for verb, words, last in _core.SketchSession.commands(text)
     ]
 
 
@@ -85,7 +91,7 @@ def block(every: Sequence[Statement], name: str) -> list[Statement]:
     """
     active, found = "", []
     for s in every:
-        if s.verb in ("SKETCH", "MODIFY", "USING") and len(s.tokens) > 1:
+        if s.verb in ("SKETCH", "MODIFY", "USING") and len(s.words) > 1:
             active = s.word(1)
         if active == name.upper():
             found.append(s)

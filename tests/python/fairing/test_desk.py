@@ -303,6 +303,70 @@ def test_the_desk_opens_objects_of_a_model() -> None:
     assert max(far) < 2e-3
 
 
+POLYGON = [(0, 0), (1, 1.2), (2.5, 1.4), (4, 0.4), (5.5, 0.9), (7, 1.1), (8, 0)]
+
+
+@pytest.mark.parametrize(
+    "call",
+    [
+        "BCurve c({points});",
+        "BCurve c({points}, degree = 2);",
+        "NURBCurve c({points}, 3, {{0, 0, 0, 0, 0.3, 0.5, 0.9, 1, 1, 1, 1}});",
+        "NURBCurve c({points}, weights = {{1, 1, 2, 1, 1, 0.5, 1}});",
+        'FairCurve c({points}, 0, as = "control");',
+        'FairCurve c({points}, 0.05, as = "control", closed = 1, degree = 2, breaks = {{4}});',
+        'FairCurve c({points}, 0.1, as = "control", ends = "tangent", measure = "jumps");',
+    ],
+)
+def test_control_points_are_moved_by_hand(call: str) -> None:
+    text = "".join(f"AbsPoint P{k}({x}, {y}, 0);\n" for k, (x, y) in enumerate(POLYGON))
+    points = "{" + ", ".join(f"P{k}" for k in range(len(POLYGON))) + "}"
+    model = moldloft.loads(text + call.format(points=points))
+    desk, t = Desk.of_object(model, "c"), np.linspace(0, 1, 90)
+    assert desk.source.control and desk.source.objects == tuple(f"P{k}" for k in range(7))
+    # Opened it is the object, and so it is in the text.
+    own = np.asarray(model["c"](t))
+    assert np.abs(desk.result.curves[0].after(t) - own).max() < 1e-12
+    assert np.abs(of_model(text + desk.program("again"), "again", t) - own).max() < 1e-12
+    assert desk.result.curves[0].certified and not desk.result.suspects
+    # A control point that is moved is there, and the text has its curve.
+    desk.run("move 3 2.6 2.2")
+    assert desk.result.points[2] == (2.6, 2.2, 0) and desk.state.fixed == {2}
+    made = desk.result.curves[0].after(t)
+    assert np.abs(of_model(text + desk.program("again"), "again", t) - made).max() < 1e-12
+    assert 0.1 < np.abs(made - own).max() < 0.9
+    assert "{2.6, 2.2, 0}" in desk.program("again") and "P1" in desk.program("again")
+    # What is given back is the object again, to the bit, also from the text of the session.
+    again = Desk.replay(desk.text)
+    assert again.result.points == desk.result.points
+    again.run("free 3")
+    assert again.result.points == Desk.of_object(model, "c").result.points
+
+
+def test_a_range_of_control_points(tmp_path: Path) -> None:
+    text = "".join(f"AbsPoint P{k}({x}, {y}, 0);\n" for k, (x, y) in enumerate(POLYGON))
+    points = "{" + ", ".join(f"P{k}" for k in range(len(POLYGON))) + "}"
+    desk = Desk.of_object(moldloft.loads(text + f"BCurve c({points});"), "c")
+    desk.run("tolerance 0.3")
+    desk.run("weight 2 point 4")
+    desk.run("range 3-5")
+    moved, limits = desk.result.curves[0].moved, desk.result.curves[0].limits
+    assert not moved[[0, 1, 5, 6]].any() and limits.tolist() == [0, 0, 0.3, 0.15, 0.3, 0, 0]
+    assert moved.max() > 0.05 and desk.result.curves[0].kept and desk.result.curves[0].certified
+    t = np.linspace(0, 1, 90)
+    made = of_model(text + desk.program("again"), "again", t)
+    assert np.abs(made - desk.result.curves[0].after(t)).max() < 1e-12
+    with pytest.raises(FairingError, match="optima of data"):
+        desk.run("one-way 1-7")
+    assert desk.log[-1] == "range 3-5"
+
+
+def test_doubled_control_points_are_sampled() -> None:
+    text = "AbsPoint A(0, 0, 0); AbsPoint B(1, 1, 0); AbsPoint C(2, 0, 0); AbsPoint D(3, 1, 0);\n"
+    desk = Desk.of_object(moldloft.loads(text + "BCurve c({A, B, B, C, C, D});"), "c")
+    assert not desk.source.control and len(desk.source.points) > 6
+
+
 def test_files(tmp_path: Path) -> None:
     desk = table(tmp_path)
     desk.run("goal fairest")

@@ -11,9 +11,9 @@ from page_in_browser import Bench
 class BoardHand(Bench):
     """A workbench whose drawing board is drawn on."""
 
-    def __init__(self, path: Path, browser: Any) -> None:
+    def __init__(self, path: Path, browser: Any, sharpness: float = 1) -> None:
         self.events = 0
-        super().__init__(path, browser)
+        super().__init__(path, browser, sharpness)
         if path.read_text(encoding="utf-8").strip():
             # With an empty file the page opens there.
             self.page.get_by_role("tab", name="Drawing board").click()
@@ -35,11 +35,16 @@ class BoardHand(Bench):
 
     def settle(self) -> Any:
         """All gestures are in the text, and the board shows it."""
-        self.hand("board.settled()")
-        self.hand("settled()")
-        # A step of the history that was taken elsewhere in the page.
-        self.hand("board.settled()")
+        self.settled()
         return self.look()
+
+    def settled(self, then: str = "null") -> Any:
+        """As `settle`, and a part of what the board knows."""
+        # A step of the history that was taken elsewhere in the page comes last.
+        waits = "await m.board.settled(); await m.settled(); await m.board.settled()"
+        return self.page.evaluate(
+            f"async () => {{ const m = window.moldloft; {waits}; return {then} }}"
+        )
 
     def begin(self, words: str) -> None:
         """Choose what an empty text begins with."""

@@ -7,12 +7,21 @@ from typing import Any
 
 from page_in_browser import Bench
 
+#: Of what the desk knows, what many acts are compared by: all of it takes longer than an act.
+BRIEF = """() => {
+  const { log, facts } = window.moldloft.desk.look()
+  return { log, facts: facts && { list: facts.list, detail: { moved: facts.detail.moved } } }
+}"""
+
 
 class DeskHand(Bench):
     """A workbench whose fairing desk is used."""
 
-    def __init__(self, path: Path, browser: Any) -> None:
-        super().__init__(path, browser)
+    #: True if only a part of what the desk knows is looked at.
+    brief = False
+
+    def __init__(self, path: Path, browser: Any, sharpness: float = 1) -> None:
+        super().__init__(path, browser, sharpness)
         self.page.get_by_role("tab", name="Fairing desk").click()
         self.page.locator(".desk:not([hidden])").wait_for()
 
@@ -20,12 +29,11 @@ class DeskHand(Bench):
         """An empty model has nothing to wait for."""
 
     def look(self) -> Any:
-        return self.hand("desk.look()")
+        return self.page.evaluate(BRIEF) if self.brief else self.hand("desk.look()")
 
     def settle(self) -> Any:
         """All acts are done, and the desk shows them."""
-        self.hand("desk.settled()")
-        self.hand("settled()")
+        self.hand("desk.settled().then(() => window.moldloft.settled())")
         return self.look()
 
     def table(self, name: str, text: str) -> Any:
@@ -38,7 +46,7 @@ class DeskHand(Bench):
 
     def at(self, point: int) -> tuple[float, float]:
         """A point, from 1, on the screen."""
-        x, y = self.look()["places"][str(point - 1)]
+        x, y = self.hand(f"desk.look().places[{point - 1}]")
         return float(x), float(y)
 
     def click(self, point: int, *, shift: bool = False) -> Any:

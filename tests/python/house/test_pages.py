@@ -363,7 +363,7 @@ def test_every_picture_is_drawn_by_a_script_and_used() -> None:
     names |= {"deformation.png", "study-waves.png"}
     for script in ("desk_pictures.py", "making_pictures.py"):
         text = (DOCS / script).read_text(encoding="utf-8")
-        names |= {f"{name}.png" for name in re.findall(r'shown\(page, "([\w-]+)"\)', text)}
+        names |= {f"{name}.png" for name in re.findall(r'(?:shown|held)\(page, "([\w-]+)"\)', text)}
     for folder in ("implicit", "sketch"):
         script = (ROOT / "examples" / folder / "pictures.py").read_text(encoding="utf-8")
         stems = {path.stem for path in (ROOT / "examples" / folder).glob("*.s*")}

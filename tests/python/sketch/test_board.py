@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from moldloft import Sketch
+from moldloft import Sketch, _core
 from moldloft.workbench.board import Board, answered
 from moldloft.workbench.statements import block, statements
 from moldloft.workbench.text import applied
@@ -250,3 +250,45 @@ def test_nonsense_is_refused(change: dict[str, Any]) -> None:
     hand = Hand(SLAB)
     reply = hand.does(change)
     assert reply["kind"] == "refused" and reply["error"] and hand.board._text == SLAB
+
+
+def test_steps_are_kept_only_of_texts_that_undo() -> None:
+    lines = ["SKETCH A 2D XZ", "POINT 1 0 0", "POINT 2 50 0", "POINT 3 50 30", "UNDO", "LINE 1 2"]
+    board = Board()
+    for count in (4, 5, 6):
+        board.sync("\n".join(lines[:count]))
+        plain = Sketch()
+        plain.run("\n".join(lines[:count]))
+        board.choose("A")
+        shown = [p[0] for p in board.facts()["points"]]
+        assert shown == [p["id"] for p in plain.objects["A"]["points"]]
+    assert shown == [1, 2]
+    board.sync("\n".join([*lines, "UNDO 2", "LINE 1 7"]))
+    assert [f["line"] for f in board.facts()["faults"]] == [8]
+    board.choose("A")
+    assert [p[0] for p in board.facts()["points"]] == [1]
+
+
+def test_a_session_without_steps_says_the_same() -> None:
+    rng = random.Random(11)
+    words = [
+        "POINT {a} {u} {v}", "LINE {a} {b}", "POLYLINE {a} {b} {c} CLOSE",
+        "LINE {n} FROM {a} TO {b}", "POINT {u}", "LINE {a} {a}", "DELETE LINE {n}", "SKETCH S{n}",
+        "USING S1", "TYPE {n} AS X", "DIMENSION X {a} {b} 7", "GENERATE FACES", "WELD {a} {b}",
+        "OFFSET 2", "EXTRUDE 3", "UNION S1 S2 INTO T", "CHECK", "EXTENSIONS",
+    ]  # fmt: skip
+    for _ in range(40):
+        sessions = [_core.SketchSession(None) for _ in range(2)]
+        sessions[1].forgo_steps()
+        lines = ["SKETCH S1 2D XZ"]
+        for _ in range(40):
+            given = {k: rng.randint(1, 8) for k in "abcn"}
+            places = {k: rng.randint(-50, 50) for k in "uv"}
+            weighed = rng.choices(words, [5, 4, 2, 3] + [1] * (len(words) - 4))
+            lines.append(weighed[0].format(**given, **places))
+        one_by_one = [(k, row) for k, ln in enumerate(lines) for row in sessions[0].run_line(ln)]
+        assert sessions[1].run_lines(lines) == one_by_one, lines
+        assert sessions[0].objects_json() == sessions[1].objects_json()
+        assert not sessions[1].stepped()
+        [no] = sessions[1].run_line("UNDO")
+        assert sessions[1].stepped() and "nothing to undo" in no[2], no

@@ -6,10 +6,13 @@ import base64
 import itertools
 import math
 import os
+import random
 import re
 import shutil
 import signal
+import struct
 import time
+import zlib
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
@@ -243,6 +246,64 @@ def test_typing_is_drawing_and_a_lost_process_loses_nothing(
     assert len(state["drawn"]["lines"]) == 3 and not drawn.faults
 
 
+def test_a_section_becomes_a_body_by_keys_alone(board: Callable[..., BoardHand]) -> None:
+    b = board()
+    press, status = b.page.keyboard.press, b.page.locator(".status")
+    focus = """() => {
+      const found = document.activeElement
+      return found.matches('button, input') ? `${found.ariaLabel} ${found.textContent}` : ''
+    }"""
+
+    def tab_to(words: str, tab: str = "Shift+Tab") -> None:
+        """Tab until something of that name has the focus."""
+        for _ in range(20):
+            press(tab)
+            if words in b.page.evaluate(focus):
+                return
+        raise AssertionError(f"Tab does not come to {words}")
+
+    b.page.get_by_role("button", name="Cross section in xz").wait_for()
+    tab_to("Cross section in xz", "Tab")
+    press("Enter")
+    b.until(lambda: b.look()["drawn"]["object"])
+    tab_to("sketch command", "Tab")
+    for command in ("POINT 1 AT 0 0; POINT 2 AT 90 2; POINT 3 AT 91 40; POINT 4 AT 2 60",
+                    "POLYLINE 1 2 3 4 CLOSE"):  # fmt: skip
+        b.page.keyboard.type(command)
+        b.key("Enter")
+    press("Escape")
+    # Points and lines are a list, one after the other announced with their types.
+    told = []
+    for _ in range(8):
+        press("n")
+        told.append(status.inner_text())
+    assert told[:4] == [f"point {k}" for k in (1, 2, 3, 4)]
+    assert told[4].startswith("line 1, 1 to 2, along x"), told
+    assert told[5].startswith("line 2, 2 to 3, along z"), told
+    assert "line 3, 3 to 4" in told[6] and "along" not in told[6]
+    assert status.get_attribute("aria-live") == "polite" or status.get_attribute("role") == "status"
+    b.key("z")
+    press("Shift+n")
+    press("n")
+    assert status.inner_text() == "line 4, 4 to 1, along z, locked"
+    lines = b.page.get_by_role("list", name="lines").get_by_role("listitem")
+    assert lines.count() == 4 and lines.last.get_attribute("aria-label") == status.inner_text()
+    # A point is moved, and each missing number opens where it is missing.
+    b.key("n", "Shift+ArrowUp")
+    assert b.settle()["drawn"]["points"][0][2] > 1
+    b.key("Control+z")
+    b.key("Escape")
+    assert b.dimension_all({1: (0, 0, 0), 2: (9, 0, 0), 3: (9, 0, 4), 4: (0, 0, 6)}) == 3
+    b.key("Escape")
+    tab_to("Extrude")
+    press("Enter")
+    b.page.keyboard.type("2")
+    b.key("Enter")
+    solid = b.settle()["solid"]
+    assert solid["exact"] and solid["volume"] == pytest.approx(2 * 9 * (4 + 6) / 2, rel=1e-12)
+    assert not b.faults
+
+
 def arguments(pid: int) -> list[str]:
     """The words that a process was started with."""
     return Path(f"/proc/{pid}/cmdline").read_text(encoding="utf-8").split("\0")
@@ -407,6 +468,103 @@ def test_the_picture_of_a_section_is_turned(board: Callable[..., BoardHand]) -> 
     # Clockwise on the screen.
     assert angle and float(angle[1]) == pytest.approx(6, abs=0.4), turned
     assert b.text() == text and not b.faults
+
+
+#: A retaining wall in metres, and where its corners are in a scan that lies 6 degrees aslant.
+WALL = {
+    1: (0, 0, 0), 2: (4, 0, 0), 3: (4, 0, 0.6), 4: (1.6, 0, 0.6), 5: (1.1, 0, 4), 6: (0, 0, 4),
+}  # fmt: skip
+ASLANT = math.radians(6)
+
+
+def in_scan(corner: int) -> tuple[float, float]:
+    """A corner of the wall as fractions of the width and the height of the scan."""
+    x, _, z = WALL[corner]
+    u, v = (
+        x * math.cos(ASLANT) - z * math.sin(ASLANT),
+        x * math.sin(ASLANT) + z * math.cos(ASLANT),
+    )
+    return (70 + 70 * u) / 400, (310 - 70 * v) / 340
+
+
+def scan() -> bytes:
+    """The scan as PNG: dark lines on grey paper."""
+    paper = np.full((340, 400), 215, np.uint8)
+    ring = [*range(1, 7), 1]
+    for a, b in itertools.pairwise(map(in_scan, ring)):
+        way = np.linspace(a, b, 400) * (400, 340)
+        paper[way[:, 1].astype(int), way[:, 0].astype(int)] = 20
+
+    def chunk(kind: bytes, data: bytes) -> bytes:
+        check = zlib.crc32(kind + data)
+        return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", check)
+
+    rows = b"".join(b"\0" + row.tobytes() for row in paper)
+    head = struct.pack(">IIBBBBB", 400, 340, 8, 0, 0, 0, 0)
+    parts = chunk(b"IHDR", head), chunk(b"IDAT", zlib.compress(rows)), chunk(b"IEND", b"")
+    return b"\x89PNG\r\n\x1a\n" + b"".join(parts)
+
+
+def test_a_section_is_traced_over_a_scan(board: Callable[..., BoardHand]) -> None:
+    b = board()
+    b.begin("Cross section in xz")
+    picture = {"name": "wall.png", "mimeType": "image/png", "buffer": scan()}
+    b.page.get_by_label("picture underneath").set_input_files([picture])
+    b.page.get_by_label("strength of the picture").wait_for()
+
+    def seen(corner: int) -> tuple[float, float]:
+        """Where a corner of the scan is on the screen."""
+        x, y = b.page.evaluate(
+            """([u, v]) => {
+              const i = document.querySelector('image.underlay')
+              const of = (name) => Number(i.getAttribute(name))
+              const p = new DOMPoint(of('x') + u * of('width'), of('y') + v * of('height'))
+              const { x, y } = p.matrixTransform(i.getScreenCTM())
+              return [x, y]
+            }""",
+            in_scan(corner),
+        )
+        return float(x), float(y)
+
+    def click(corner: int) -> None:
+        x, y = seen(corner)
+        b.page.mouse.move(x + 6, y + 4)
+        b.page.mouse.move(x + chance.uniform(-1, 1), y + chance.uniform(-1, 1))
+        b.page.mouse.down()
+        b.page.mouse.up()
+        b.hand("board.settled()")
+
+    chance = random.Random(8)
+    # The base along x and the back along z: then the scan is straight under the page.
+    b.page.get_by_role("button", name="Axes of the picture").click()
+    for corner in (1, 2, 1, 6):
+        click(corner)
+    (x1, y1), (x2, y2), (x6, y6) = map(seen, (1, 2, 6))
+    assert abs(y2 - y1) < 0.015 * (x2 - x1) and abs(x6 - x1) < 0.015 * (y1 - y6)
+    # Each corner is a click on the scan, and the last one is on the first.
+    b.key("d")
+    for corner in (1, 2, 3, 4, 5, 6, 1):
+        click(corner)
+    lines = b.settle()["drawn"]["lines"]
+    assert [ln[3] for ln in lines][:3] == ["X", "Z", "X"] and len(lines) == 6, lines
+    assert [ln[3] for ln in lines][4:] == ["X", "Z"] and lines[3][3] not in ("X", "Z")
+    # What was traced is the wall before any dimension: its widths to a pixel's worth.
+    places = {p[0]: p[1:3] for p in b.look()["drawn"]["points"]}
+    size = places[2][0] - places[1][0]
+    for corner, (x, _, z) in WALL.items():
+        u, v = ((places[corner][k] - places[1][k]) / size * 4 for k in (0, 1))
+        assert (u, v) == pytest.approx((x, z), abs=0.06), corner
+    assert b.dimension_all(WALL) == 5
+    b.page.get_by_role("button", name="Extrude").click()
+    b.page.keyboard.type("2")
+    b.key("Enter")
+    solid = b.settle()["solid"]
+    area = 4 * 0.6 + (1.6 + 1.1) / 2 * 3.4
+    assert solid["exact"] and solid["volume"] == pytest.approx(2 * area, rel=1e-9)
+    sketch = Sketch()
+    sketch.run(b.text())
+    assert sketch.volume == pytest.approx(2 * area, rel=1e-9)
+    assert not b.faults
 
 
 def cuboid() -> str:

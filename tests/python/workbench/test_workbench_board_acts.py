@@ -35,13 +35,14 @@ OWN = ("id", "version", "edits", "kind")
 def board(tmp_path: Path, browser: Any) -> Iterator[BoardHand]:
     path = tmp_path / "part.skt"
     path.write_text("", encoding="utf-8")
-    made = BoardHand(path, browser)
+    made = BoardHand(path, browser, sharpness=0.25)
     yield made
     made.close()
 
 
 def drawn(b: BoardHand) -> dict[str, Any]:
-    return {k: v for k, v in b.settle()["drawn"].items() if k not in OWN}
+    shown = b.settled("m.board.look().drawn")
+    return {k: v for k, v in shown.items() if k not in OWN}
 
 
 def replayed(text: str) -> dict[str, Any]:

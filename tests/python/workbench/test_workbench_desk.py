@@ -15,7 +15,7 @@ import pytest
 import moldloft
 from desk_by_hand import DeskHand
 from hull_table import hull
-from moldloft.fairing import Desk
+from moldloft.fairing import Desk, Spline
 from moldloft.fairing.desk_source import DeskSource
 from page_in_browser import children, needs_page
 
@@ -29,10 +29,10 @@ MODEL = "AbsPoint A(0, 0, 0);\n"
 def desk(tmp_path: Path, browser: Any) -> Iterator[Callable[..., DeskHand]]:
     made: list[DeskHand] = []
 
-    def make(text: str = MODEL, name: str = "boat.sdl") -> DeskHand:
+    def make(text: str = MODEL, name: str = "boat.sdl", sharpness: float = 1) -> DeskHand:
         path = tmp_path / name
         path.write_text(text, encoding="utf-8")
-        made.append(DeskHand(path, browser))
+        made.append(DeskHand(path, browser, sharpness))
         return made[-1]
 
     yield make
@@ -349,8 +349,7 @@ def test_an_object_of_the_model_and_a_lost_process(desk: Callable[..., DeskHand]
     d.until(lambda: d.look()["session"])
     d.key("ArrowRight", "k")
     assert d.look()["log"] == ["knuckle 2"]
-    [pid] = [p for p in children(d.process.pid) if "desk" in arguments(p)]
-    os.kill(pid, signal.SIGKILL)
+    lose(d)
     d.key("ArrowRight", "f")
     assert d.look()["log"] == ["knuckle 2", "fix 3"]
     agrees(d)
@@ -366,14 +365,22 @@ def arguments(pid: int) -> list[str]:
     return Path(f"/proc/{pid}/cmdline").read_text(encoding="utf-8").split("\0")
 
 
+def lose(d: DeskHand) -> None:
+    """Ends the process of the desk."""
+    for pid in children(d.process.pid):
+        if "desk" in arguments(pid):
+            os.kill(pid, signal.SIGKILL)
+
+
 def test_random_acts(desk: Callable[..., DeskHand]) -> None:
-    """Acts of a hand, undone and done again at random: the start and the log to the bit."""
+    """Acts of a hand, undone, done again, with lost processes: the start and the log to the bit."""
     rng = np.random.default_rng(5)
-    d = desk()
+    d = desk(sharpness=0.25)
     first = d.table("line.csv", csv(rail()[:20]))
+    d.brief = True
     seen: dict[str, Any] = {}
     for _ in range(2000 if SOAK else 20):
-        act = rng.integers(10)
+        act = rng.integers(11)
         # Opening the table is a step of the history, too: it stays.
         if act < 2 and d.look()["log"]:
             d.key("Control+z")
@@ -391,17 +398,20 @@ def test_random_acts(desk: Callable[..., DeskHand]) -> None:
         elif act == 6:
             d.click(int(rng.integers(1, 21)))
             d.key(str(rng.choice(["k", "f", "e", "Enter"])))
+        elif act == 10 and rng.integers(30) == 0:
+            lose(d)
         elif act == 7:
             d.key(str(rng.choice(["g", "[", "]", "n", "0", "Alt+ArrowUp", "Alt+Shift+ArrowLeft"])))
         else:
             d.click(int(rng.integers(1, 21)))
         state = d.look()
-        facts = state["facts"]
-        shown = {"list": facts["list"], "moved": facts["detail"]["moved"]}
-        assert seen.setdefault("\n".join(state["log"]), shown) == shown
+        assert seen.setdefault("\n".join(state["log"]), state["facts"]) == state["facts"]
+    d.brief = False
     agrees(d)
+    d.brief = True
     for _ in range(len(d.look()["log"])):
         d.key("Control+z")
+    d.brief = False
     last = d.look()
     assert last["log"] == [] and last["facts"]["list"] == first["facts"]["list"]
     assert last["facts"]["detail"]["after"] == first["facts"]["detail"]["after"]
@@ -533,6 +543,105 @@ def test_a_point_of_an_object_is_dragged_and_applied(desk: Callable[..., DeskHan
     d.until(lambda: d.text() == text)
     d.key("Control+z")
     assert d.settle()["log"] == [] and d.look()["facts"]["list"] == before["facts"]["list"]
+    assert not d.faults
+
+
+@pytest.mark.parametrize("call", ['FairCurve rail({}, 0, as = "control");', "BCurve rail({});"])
+def test_a_control_point_is_dragged_and_the_text_follows(
+    call: str, desk: Callable[..., DeskHand]
+) -> None:
+    rows = [(0, 0), (1, 0.6), (2.4, 1.4), (4, 1), (5.2, 1.2), (6.4, 0.8), (8, 0)]
+    points = "".join(f"AbsPoint P{k}({x}, {y}, 0);\n" for k, (x, y) in enumerate(rows))
+    text = points + call.format("{" + ", ".join(f"P{k}" for k in range(7)) + "}") + "\n"
+    d = desk(text)
+    d.page.locator(".desk-start .picks").get_by_text("rail").click()
+    d.until(lambda: d.look()["session"])
+    before = d.settle()
+    assert np.array(before["facts"]["detail"]["data"]) == pytest.approx(np.array(rows))
+    assert d.page.locator(".desk .polygon").count() == 1
+    comb, badge = d.page.locator(".desk .comb.after").first, d.page.locator(".desk .badge")
+    drawn = {comb.get_attribute("d")}
+
+    def pulled(point: int, dx: float, dy: float) -> np.ndarray:
+        """A control point dragged with the comb live; how far it went."""
+        start = d.settle()
+        x, y = d.at(point)
+        d.page.mouse.move(x, y)
+        d.page.mouse.down()
+        for share in (0.4, 0.7, 1.0):
+            d.page.mouse.move(x + share * dx, y + share * dy)
+            d.until(lambda: comb.get_attribute("d") not in drawn)
+            drawn.add(comb.get_attribute("d"))
+            assert badge.text_content() == "certified" and d.look()["log"] == start["log"]
+        d.page.mouse.up()
+        end = d.settle()
+        assert len(end["log"]) == len(start["log"]) + 1
+        found = np.array(end["facts"]["detail"]["data"]) - start["facts"]["detail"]["data"]
+        assert not np.delete(found, point - 1, axis=0).any()
+        assert found[point - 1] * end["scale"] == pytest.approx((dx, -dy), abs=1.5)
+        return np.asarray(found)
+
+    polygon = rows + pulled(4, 5, -40)
+    assert d.text() == text and badge.text_content() == "certified"
+    d.page.get_by_role("button", name="Apply").click()
+    d.settle()
+
+    def in_text() -> np.ndarray:
+        """The curve of the text."""
+        return np.asarray(moldloft.loads(d.text())["rail_faired"](np.linspace(0, 1, 65)))
+
+    def spline(polygon: np.ndarray) -> np.ndarray:
+        clamped = call.startswith("B")
+        return np.asarray(Spline(polygon, clamped=clamped)(np.linspace(0, 1, 65)))
+
+    assert np.abs(in_text() - spline(polygon)).max() < 1e-6
+    assert np.hypot(*(spline(polygon)[:, :2] - polygon[3]).T).min() > 0.05
+    # From now on each drag is a change of the text, and one step takes both back.
+    applied, steps = d.text(), d.hand("steps().done")
+    moved = polygon + pulled(3, -8, 25)
+    assert d.text() != applied and d.text().count("rail_faired(") == 1
+    assert np.abs(in_text() - spline(moved)).max() < 1e-6
+    assert len(d.hand("steps().done")) == len(steps) + 1
+    dragged = d.text()
+    d.key("Control+z")
+    d.until(lambda: d.text() == applied and len(d.settle()["log"]) == 1)
+    d.key("Control+Shift+z")
+    d.until(lambda: d.text() == dragged and len(d.settle()["log"]) == 2)
+    for _ in range(3):
+        d.key("Control+z")
+    d.until(lambda: d.text() == text and not d.settle()["log"])
+    # Without what was applied, a drag is in the log alone.
+    pulled(5, 0, -22)
+    assert d.text() == text
+    agrees(d)
+    assert not d.faults
+
+
+def test_points_and_weights_change_the_text(desk: Callable[..., DeskHand]) -> None:
+    d = desk()
+    d.table("line.csv", csv(rail()[:20]))
+    d.page.get_by_role("button", name="Apply").click()
+    d.settle()
+    d.drag(10, 2, -30)
+    moved = d.text()
+    assert "fixed = {10}" in moved.replace("\n  ", " ")
+    d.tool("Weight")
+    d.drag(5, 0, -60)
+    weighed = d.text()
+    assert "tolerances = {" in weighed.replace("\n  ", " ") and "tolerances" not in moved
+    curve = replayed(d).result.curves[0].after(np.linspace(0, 1, 50))
+    made = np.asarray(moldloft.loads(weighed)["line"](np.linspace(0, 1, 50)))
+    assert np.abs(made - curve).max() < 1e-9
+    # Statements that were edited by hand are left alone.
+    d.page.get_by_role("textbox", name="program").focus()
+    d.page.keyboard.press("Control+End")
+    d.page.keyboard.press("ArrowUp")
+    d.page.keyboard.type("# mine\n")
+    d.hand("settled()")
+    mine = d.text()
+    d.key("v")
+    d.drag(12, 0, -20)
+    assert d.text() == mine and d.look()["log"][-1].startswith("move 12")
     assert not d.faults
 
 

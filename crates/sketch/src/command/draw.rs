@@ -4,7 +4,7 @@ use super::CommandError;
 use super::args::Args;
 use super::session::{CommandReply, MAX_POINTS, SketchSession};
 use super::subject::ReplySubject;
-use super::words::CommandTokenKind;
+use super::words::{Command, CommandTokenKind};
 use crate::{
     Align, CoordinateAxis, Drawing, DrawnLine, DrawnPoint, FaceId, Free, LineId, LineTypeSource,
     Naming, PointId, Projection, SketchObject, TypeProposal,
@@ -14,6 +14,32 @@ use crate::{
 const FAR_WELD: f64 = 0.05;
 
 impl SketchSession {
+    /// True if points and lines change nothing but the drawing, and no step is kept of them.
+    pub(super) fn only_draws(&self, verb: &str) -> bool {
+        let plain = || self.state.objects.values().all(|o| o.feature.is_none());
+        matches!(verb, "POINT" | "LINE" | "POLYLINE")
+            && !self.keeps_steps
+            && self.transaction.is_none()
+            && self.worked.is_empty()
+            && self.state.outside.is_empty()
+            && plain()
+    }
+
+    /// Runs a command that only draws: refused, it has changed nothing, so that no state before it is needed.
+    pub(super) fn draw_only(&mut self, verb: &'static str, command: &Command) -> Vec<CommandReply> {
+        let outer = std::mem::take(&mut self.out);
+        let result = self.dispatch(verb, command);
+        let mut replies = std::mem::replace(&mut self.out, outer);
+        match result {
+            Ok(()) => {
+                self.history.push(command.text.clone());
+                self.journal.push(command.text.clone());
+            }
+            Err(fault) => replies.push(fault.into()),
+        }
+        replies
+    }
+
     pub(super) fn sketch(&mut self, args: &mut Args) -> Result<(), CommandError> {
         let shape = |t: &str| ["2D", "3D"].iter().any(|d| t.eq_ignore_ascii_case(d));
         let named = args.peek().is_some_and(|t| {

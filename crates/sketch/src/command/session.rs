@@ -224,13 +224,13 @@ pub struct SketchSession {
     /// Number of states discarded as too old.
     forgotten: usize,
     redo: Vec<SessionState>,
-    history: Vec<String>,
+    pub(super) history: Vec<String>,
     pub(super) journal: Vec<String>,
     pub(super) files: Box<dyn Files>,
     pub(crate) question: Option<Question>,
     begun: String,
     views: Vec<Arc<DrawingCache>>,
-    worked: Vec<Arc<Worked>>,
+    pub(super) worked: Vec<Arc<Worked>>,
     kept: Arc<SessionBodies>,
     depth: usize,
     over: bool,
@@ -246,7 +246,17 @@ pub struct SketchSession {
     pub(super) running: usize,
     /// Features to be checked after them, by folded name; true for those whose numbers were changed.
     pub(super) unchecked: IndexMap<String, bool>,
+    /// False if the host keeps no steps to undo.
+    pub(super) keeps_steps: bool,
+    /// True once UNDO or REDO was run.
+    stepped: bool,
+    /// The last wireframe, and its solids.
+    pub(super) fitted: Option<(Wireframe, crate::solid::faces::Fitted)>,
 }
+
+/// Positions, edges and the plane of a section.
+pub(super) type Wireframe =
+    (Vec<moldloft_num::Vec3>, Vec<[usize; 2]>, Option<crate::CoordinateAxis>);
 
 /// Commands that only look: an open question stays open.
 const LOOKS: [&str; 12] = [
@@ -328,7 +338,21 @@ impl SketchSession {
             transaction: None,
             running: 0,
             unchecked: IndexMap::new(),
+            keeps_steps: true,
+            stepped: false,
+            fitted: None,
         }
+    }
+
+    /// Keeps no steps to undo from now on, for hosts that run a text anew after each edit: a drawing of n points
+    /// takes time in proportion to n, not to its square.
+    pub fn forgo_steps(&mut self) {
+        self.keeps_steps = false;
+    }
+
+    /// True once UNDO or REDO was run, of which [`forgo_steps`](SketchSession::forgo_steps) leaves nothing.
+    pub fn stepped(&self) -> bool {
+        self.stepped
     }
 
     /// Runs a line: one or more commands, or a part of one that ends in `&`. A refused command
@@ -394,12 +418,17 @@ impl SketchSession {
     }
 
     fn run_command(&mut self, command: &Command) -> Vec<CommandReply> {
+        let value = self.is_value(command);
+        let found = if value { Ok(("ACCEPT", None)) } else { verbs::find(&command.tokens[0].text) };
+        if let Ok((verb, None)) = found
+            && self.only_draws(verb)
+        {
+            return self.draw_only(verb, command);
+        }
         let before = self.state.clone();
         let marks = (self.undo.len() + self.forgotten, self.journal.len());
         let unchecked = self.unchecked.clone();
         let outer = std::mem::take(&mut self.out);
-        let value = self.is_value(command);
-        let found = if value { Ok(("ACCEPT", None)) } else { verbs::find(&command.tokens[0].text) };
         let verb = found.as_ref().map_or("", |f| f.0);
         let result = found.and_then(|(verb, note)| {
             self.out.extend(note.map(CommandReply::note));
@@ -427,7 +456,7 @@ impl SketchSession {
                 if !nested && (changed || steps || asked || answered) {
                     self.journal.push(text);
                 }
-                if !nested && !steps && changed && self.transaction.is_none() {
+                if !nested && !steps && changed && self.transaction.is_none() && self.keeps_steps {
                     self.push_undo(before);
                 }
             }
@@ -843,6 +872,7 @@ impl SketchSession {
     }
 
     fn step(&mut self, args: &mut Args, back: bool) -> Result<(), CommandError> {
+        self.stepped = true;
         if self.transaction.is_some() {
             return Err(CommandError::text("a drag is open", "end it first"));
         }

@@ -5,7 +5,7 @@ use super::args::Args;
 use super::draw::{require_lines, require_point};
 use super::info::{likely_aligns, suggested_in_turn, suggestions};
 use super::question::Question;
-use super::session::{CommandReply, MAX_POINTS, SketchSession};
+use super::session::{CommandReply, MAX_POINTS, SketchSession, Wireframe};
 use super::subject::{ReplySubject, Suggestion};
 use crate::solid::faces::{Fitted, Polygon, WireframeFit, fit, fit_plane};
 use crate::solid::merge::{self, Placed};
@@ -45,7 +45,9 @@ impl SketchSession {
         let index = |p: PointId| ids.binary_search(&p).unwrap_or(0);
         let edges: Vec<[usize; 2]> =
             object.drawing.lines.values().map(|l| [index(l.p), index(l.q)]).collect();
-        let fitted = match object.drawing.section {
+        let key = (positions.clone(), edges.clone(), object.drawing.section);
+        let known = self.fitted.take().filter(|known| known.0 == key).map(|known| known.1);
+        let search = |(positions, edges, section): &Wireframe| match *section {
             Some(normal) => {
                 let mut n = Vec3::zero();
                 match normal {
@@ -54,10 +56,12 @@ impl SketchSession {
                     CoordinateAxis::Y => n.y = -1.0,
                     CoordinateAxis::Z => n.z = 1.0,
                 }
-                fit_plane(&positions, &edges, n)
+                fit_plane(positions, edges, n)
             }
-            None => fit(&positions, &edges),
+            None => fit(positions, edges),
         };
+        let fitted = known.unwrap_or_else(|| search(&key));
+        self.fitted = Some((key, fitted.clone()));
         let pairs = |list: &[[usize; 2]]| {
             let text: Vec<String> = (list.iter())
                 .filter(|e| e.iter().all(|v| *v < ids.len()))

@@ -311,6 +311,9 @@ impl SketchSession {
             None => None,
         };
         let object = Arc::clone(self.state.objects.get(&name.to_lowercase())?);
+        if object.dimensions.is_empty() {
+            return Some(vec![]);
+        }
         let (planes, data) = (Arc::clone(&self.view(&object).planes), self.data(&object));
         Some(crate::format::svg::marks(&object, &planes, &data, view.as_ref()))
     }

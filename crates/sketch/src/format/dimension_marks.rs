@@ -46,7 +46,7 @@ pub(crate) struct Page<'a> {
 struct PageFrame {
     /// The points, in the order of the places; `None` where the directions are parallel.
     points: Vec<Option<[f64; 2]>>,
-    /// The lines, from their lower ends.
+    /// The lines, from their lower ends, in the order of these.
     lines: Vec<[[f64; 2]; 2]>,
 }
 
@@ -61,10 +61,9 @@ impl PageFrame {
             let (p, q) = (p?, q?);
             Some(if p[0] <= q[0] { [p, q] } else { [q, p] })
         };
-        PageFrame {
-            points: places.values().map(|at| split(*at, a, w)).collect(),
-            lines: drawing.lines.values().filter_map(|l| line(l.p, l.q)).collect(),
-        }
+        let mut lines: Vec<_> = drawing.lines.values().filter_map(|l| line(l.p, l.q)).collect();
+        lines.sort_unstable_by(|l, m| l[0][0].total_cmp(&m[0][0]));
+        PageFrame { points: places.values().map(|at| split(*at, a, w)).collect(), lines }
     }
 }
 
@@ -282,7 +281,7 @@ fn beside(
 fn outermost(frame: &PageFrame, reach: [f64; 2], side: f64) -> f64 {
     let mut far = f64::NEG_INFINITY;
     let slack = 1e-6 * (reach[1] - reach[0]);
-    for &[p, q] in &frame.lines {
+    for &[p, q] in frame.lines.iter().take_while(|l| l[0][0] <= reach[1] - slack) {
         let (low, high) = (p[0].max(reach[0] + slack), q[0].min(reach[1] - slack));
         if low > high {
             continue;
