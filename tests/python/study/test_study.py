@@ -667,8 +667,8 @@ def test_a_cluster_gives_the_same_table(tmp_path):
 class OtherVersion(ThreadPoolExecutor):
     """An executor whose workers take the request of another version for theirs."""
 
-    def submit(self, function, request):
-        return super().submit(function, {**request, "version": "0.0.9"})
+    def submit(self, function, requests):
+        return super().submit(function, [{**each, "version": "0.0.9"} for each in requests])
 
 
 def test_workers_of_another_version_end_the_run(tmp_path):
