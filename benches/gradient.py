@@ -180,43 +180,60 @@ def resident(word: str) -> int:
     return int(status.split(f"{word}:")[1].split()[0]) << 10
 
 
-def many(divisions: int) -> None:
-    """Prints time and memory of reverse mode by 10 080 coordinates, of weights on the mesh."""
+def many(kind: str, divisions: int) -> None:
+    """Prints time of reverse mode by 10 080 coordinates, of weights on the mesh, and its memory."""
+    m = hull(kind, points(60, 56), divisions)
+    names = [name for name in m.literals if name.startswith("P")]
+    values = [(name, m.eval(name)) for name in names]
+    count = len(m.mesh().vertices)
+    given = [("mesh", np.random.default_rng(0).normal(size=(1, 3 * count)))]
+    # The first gradient: pages freed by one before would be taken again.
+    grown = 0
+    if sys.platform == "linux":
+        Path("/proc/self/clear_refs").write_text("5", encoding="utf-8")
+        before = resident("VmRSS")
+        _core.vjp(m._document, given, names, "reverse")
+        grown = resident("VmHWM") - before
+
+    def evaluate() -> None:
+        m._document.set([(name, x + 1e-9) for name, x in values])
+        m.mesh().vertices  # noqa: B018
+        m._document.set(values)
+
+    once = least(evaluate) / 2
+    back = least(partial(_core.vjp, m._document, given, names, "reverse"))
+    print(count, grown, once, back)
+
+
+def by_many() -> None:
+    """Prints times by 10 080 coordinates, and the slope of the memory over the vertices."""
     for kind in "BC":
-        m = hull(kind, points(60, 56), divisions)
-        names = [name for name in m.literals if name.startswith("P")]
-        values = [(name, m.eval(name)) for name in names]
-        count = len(m.mesh().vertices)
-        given = [("mesh", np.random.default_rng(0).normal(size=(1, 3 * count)))]
-
-        def evaluate(m: moldloft.Model = m, values: list[tuple[str, float]] = values) -> None:
-            m._document.set([(name, x + 1e-9) for name, x in values])
-            m.mesh().vertices  # noqa: B018
-            m._document.set(values)
-
-        once = least(evaluate) / 2
-        back = least(partial(_core.vjp, m._document, given, names, "reverse"))
-        text = f"{kind} 60 x 56, {len(names)} inputs, {count} vertices: evaluation {once * 1e3:.2f}"
-        text += f" ms, reverse {back * 1e3:.2f} ms = {back / once:.1f} evaluations"
-        if sys.platform == "linux":
-            Path("/proc/self/clear_refs").write_text("5", encoding="utf-8")
-            before = resident("VmRSS")
-            _core.vjp(m._document, given, names, "reverse")
-            text += f", {(resident('VmHWM') - before) / count:.0f} bytes a vertex"
-        print(text, flush=True)
+        found = []
+        for divisions in (100, 300):
+            words = [sys.executable, __file__, kind, str(divisions)]
+            out = subprocess.run(words, check=True, capture_output=True, text=True).stdout
+            count, grown, once, back = map(float, out.split())
+            found.append((count, grown))
+            print(
+                f"{kind} 60 x 56, 10080 inputs, {count:.0f} vertices: evaluation {once * 1e3:.2f} "
+                f"ms, reverse {back * 1e3:.2f} ms = {back / once:.1f} evaluations, "
+                f"{grown / 1e6:.1f} MB",
+                flush=True,
+            )
+        (few, small), (more, large) = found
+        print(f"  {(large - small) / (more - few):.0f} bytes for each further vertex", flush=True)
 
 
 def main() -> None:
-    if sys.argv[1:] == ["many"]:
-        many(100)
+    if len(sys.argv) == 3:
+        many(sys.argv[1], int(sys.argv[2]))
         return
     net = points(14, 25)
     for divisions in (40, 100):
         for kind in "BC":
             compared(kind, divisions, net)
     beside_jax(40, net)
-    # Memory in a process of its own: freed pages would be taken first.
-    subprocess.run([sys.executable, __file__, "many"], check=True)
+    by_many()
 
 
 if __name__ == "__main__":

@@ -14,7 +14,7 @@ import resource
 import sys
 import tempfile
 import time
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import Executor, Future
 from pathlib import Path
 from typing import Any
@@ -23,14 +23,16 @@ from distributed import Client, LocalCluster
 
 from moldloft import study
 from moldloft.study import running
+from moldloft.study.cluster import ClusterExecutor
 
 INPUTS, OUTPUTS = ("beam", "draft", "length", "rake"), ("area", "volume", "kmt")
 
 
-def nothing(request: Mapping[str, Any]) -> dict[str, Any]:
-    """The answer of a case, without the case."""
-    outputs = {name: sum(request["inputs"].values()) + k for k, name in enumerate(OUTPUTS)}
-    return {"state": "done", "outputs": outputs, "derivatives": {}, "seconds": 0.0}
+def nothing(requests: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:
+    """The answers of cases, without the cases."""
+    sums = [sum(request["inputs"].values()) for request in requests]
+    outputs = [{name: x + k for k, name in enumerate(OUTPUTS)} for x in sums]
+    return [{"state": "done", "outputs": o, "derivatives": {}, "seconds": 0.0} for o in outputs]
 
 
 class Cluster(Executor):
@@ -40,11 +42,13 @@ class Cluster(Executor):
         self._of = client.get_executor(pure=False)
         self._max_workers = sum(client.nthreads().values())
 
+    bundle = ClusterExecutor.bundle
+
     def submit(  # type: ignore[override]
-        self, function: Callable[..., Any], request: Mapping[str, Any]
+        self, function: Callable[..., Any], requests: Sequence[Mapping[str, Any]]
     ) -> Future[Any]:
-        """Submit one case."""
-        found: Future[Any] = self._of.submit(nothing, dict(request))
+        """Submit some cases."""
+        found: Future[Any] = self._of.submit(nothing, list(requests))
         return found
 
 

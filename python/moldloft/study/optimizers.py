@@ -65,26 +65,40 @@ def _scale(search: Search) -> float:
 def _scipy(goal: Goal, search: Search, scipy: Any) -> tuple[str, bool]:
     by_gradients = goal.method in BY_GRADIENTS
     scale = _scale(search) if by_gradients else 1.0
+    curvature = _Curvature(search, scale) if goal.method == "trust-constr" else None
     constraints = []
     # SciPy takes equalities apart from limits.
     for equal in (True, False):
         chosen = np.flatnonzero([b.equal == equal for b in search.bounds])
         if chosen.size:
-            more = {"jac": _rows(search.jacobian, chosen, scale)} if by_gradients else {}
+            more: dict[str, Any] = {}
+            if by_gradients:
+                more["jac"] = _rows(search.jacobian, chosen, scale)
+            if curvature:
+                more["hess"] = curvature.of(chosen)
             low, high = scale * search.low[chosen], scale * search.high[chosen]
             value = _rows(search.constraints, chosen, scale)
             constraints.append(scipy.NonlinearConstraint(value, low, high, **more))
     options: dict[str, Any] = {"maxiter": goal.evaluations}
     if goal.method == "slsqp":
         options["ftol"] = scale * goal.tolerance
-    elif goal.method == "trust-constr":
+    elif curvature:
         options |= {"gtol": scale * goal.tolerance, "xtol": goal.tolerance}
+        # A barrier of the size of the tolerance from the start: no sequence of barriers.
+        options |= dict.fromkeys(
+            ("initial_barrier_parameter", "initial_barrier_tolerance"), goal.tolerance
+        )
     else:
         options = {"maxfev": goal.evaluations, "final_tr_radius": goal.tolerance}
+
+    def gradient(unit: Floats) -> Floats:
+        return curvature.gradient(unit) if curvature else scale * search.gradient(unit)
+
     found = scipy.minimize(
         lambda unit: scale * search.objective(unit),
         search.starts[0],
-        jac=(lambda unit: scale * search.gradient(unit)) if by_gradients else None,
+        jac=gradient if by_gradients else None,
+        hess=curvature.update(scipy.BFGS) if curvature else None,
         method=goal.method,
         bounds=scipy.Bounds(np.zeros(len(search.points.most)), search.points.most),
         constraints=constraints,
@@ -96,6 +110,46 @@ def _scipy(goal: Goal, search: Search, scipy: Any) -> tuple[str, bool]:
         said = f"the optimiser ended where a constraint is violated by {over:.2g} of its limit"
         return said, False
     return str(found.message), bool(found.success)
+
+
+class _Curvature:
+    """The Hessian of the Lagrangian for `trust-constr`, by the BFGS formula.
+
+    SciPy approximates objective and constraints apart, each by a positive definite matrix, which
+    takes three times as many points. Here the constraints' part is in the objective's matrix.
+    """
+
+    def __init__(self, search: Search, scale: float) -> None:
+        self._search, self._scale = search, scale
+        self._multipliers = np.zeros(len(search.bounds))
+        self._unit = search.starts[0]
+
+    def of(self, chosen: Any) -> Callable[[Floats, Floats], Floats]:
+        """The Hessian of constraints, none of its own: their multipliers are kept."""
+
+        def hessian(unit: Floats, multipliers: Floats) -> Floats:
+            self._multipliers[chosen] = multipliers
+            return np.zeros((len(unit), len(unit)))
+
+        return hessian
+
+    def gradient(self, unit: Floats) -> Floats:
+        """The objective's gradient; the point is that of the next update."""
+        self._unit = np.array(unit)
+        return self._scale * self._search.gradient(unit)
+
+    def update(self, formula: type) -> Any:
+        """The matrix by a formula of SciPy for the objective alone."""
+
+        def of_lagrangian(step: Floats, change: Floats) -> None:
+            ends = [self._search.jacobian(at) for at in (self._unit, self._unit - step)]
+            curved = self._scale * self._multipliers @ (ends[0] - ends[1])
+            of_objective(step, change + curved)
+
+        # The unit matrix is the right one at the start, by the factor of `_scale`.
+        matrix = formula(exception_strategy="damp_update", init_scale=1.0)
+        of_objective, matrix.update = matrix.update, of_lagrangian
+        return matrix
 
 
 def _rows(

@@ -19,6 +19,7 @@ from concurrent.futures import (
     wait,
 )
 from dataclasses import asdict
+from itertools import islice
 from pathlib import Path
 from types import TracebackType
 from typing import TYPE_CHECKING, Any
@@ -34,7 +35,7 @@ from moldloft.study.definition import Study, StudyError
 from moldloft.study.plans import listed, points, ranges
 from moldloft.study.sources import check_programs, source_files
 from moldloft.study.store import Outcome, Results, Store
-from moldloft.study.workers import CRASHED, OTHER_VERSION, TIMED_OUT, end_workers, evaluate_apart
+from moldloft.study.workers import CRASHED, OTHER_VERSION, TIMED_OUT, end_workers, evaluate_each
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -48,6 +49,9 @@ RETRIED = (TIMED_OUT, CRASHED, SOLVER_FAILED)
 
 #: Cases handed to an executor beyond those under way, for each of its workers: the back-pressure.
 QUEUED_PER_WORKER = 4
+
+#: Duration of a call that has several cases, by the longest of those before.
+BUNDLE_SECONDS = 0.2
 
 #: Times that a case is handed out again after an executor lost its machine.
 MAX_LOST = 3
@@ -313,38 +317,48 @@ def _evaluate(
 def _answers(
     executor: Executor, requests: Iterator[dict[str, Any]], processes: int
 ) -> Iterator[tuple[dict[str, Any], dict[str, Any]]]:
-    """The answers to requests in order of completion; the number in progress is limited."""
+    """The answers to requests in order of completion; the number in progress is limited.
+
+    An executor with a `bundle` is given several short cases in a call.
+    """
     workers = getattr(executor, "_max_workers", None) or processes
     window = max(workers, processes) * (1 + QUEUED_PER_WORKER)
-    under_way: dict[Future[dict[str, Any]], tuple[dict[str, Any], int]] = {}
+    most, size = getattr(executor, "bundle", 1), 1
+    under_way: dict[Future[list[dict[str, Any]]], tuple[list[dict[str, Any]], int]] = {}
     left = True
     try:
         while left or under_way:
             while left and len(under_way) < window:
-                request = next(requests, None)
-                if request is None:
+                bundle = list(islice(requests, size))
+                if not bundle:
                     left = False
                     break
-                under_way[executor.submit(evaluate_apart, request)] = (request, 0)
+                under_way[executor.submit(evaluate_each, bundle)] = (bundle, 0)
             ended, _ = wait(under_way, return_when=FIRST_COMPLETED)
             for future in ended:
-                request, lost = under_way.pop(future)
+                bundle, lost = under_way.pop(future)
                 try:
-                    answer = future.result()
+                    answers = future.result()
                 except (Exception, CancelledError) as error:
                     # The executor lost the machine or the process of the call.
                     if lost < MAX_LOST:
-                        under_way[executor.submit(evaluate_apart, request)] = (request, lost + 1)
+                        for one in bundle:
+                            under_way[executor.submit(evaluate_each, [one])] = ([one], lost + 1)
                         continue
-                    answer = {
-                        "state": CRASHED,
-                        "id": "worker-lost",
-                        "message": f"the worker was lost {lost + 1} times "
-                        f"({type(error).__name__}: {error})",
-                    }
-                if answer.get("id") == OTHER_VERSION:
-                    raise StudyError(answer["message"])
-                yield request, answer
+                    answers = [
+                        {
+                            "state": CRASHED,
+                            "id": "worker-lost",
+                            "message": f"the worker was lost {lost + 1} times "
+                            f"({type(error).__name__}: {error})",
+                        }
+                    ] * len(bundle)
+                for answer in answers:
+                    if answer.get("id") == OTHER_VERSION:
+                        raise StudyError(answer["message"])
+                yield from zip(bundle, answers, strict=True)
+                longest = max(float(answer.get("seconds", 0.0)) for answer in answers)
+                size = max(min(most, int(BUNDLE_SECONDS / max(longest, 1e-6))), 1)
     finally:
         for future in under_way:
             future.cancel()

@@ -81,11 +81,11 @@ def _end_of(copy: int, asker: int) -> int | None:
 
 
 if __name__ == "__main__":
-    if sys.platform == "linux":
-        _supervised()
-    signal.signal(signal.SIGTERM, _stopped)
     try:
+        if sys.platform == "linux":
+            _supervised()
+        signal.signal(signal.SIGTERM, _stopped)
         serve(_evaluated, IDLE_SECONDS)
-    except SystemExit:
-        # Destructors of libraries are not waited for.
+    except (SystemExit, BrokenPipeError):
+        # The study was killed, or destructors of libraries are not waited for.
         os._exit(1)

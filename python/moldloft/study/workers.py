@@ -13,14 +13,22 @@ import shutil
 import socket
 import tempfile
 import threading
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 from moldloft import _core
 from moldloft.child_process import ChildProcess, ProcessEnd
 
-__all__ = ["CRASHED", "OTHER_VERSION", "TIMED_OUT", "end_workers", "evaluate_apart", "install"]
+__all__ = [
+    "CRASHED",
+    "OTHER_VERSION",
+    "TIMED_OUT",
+    "end_workers",
+    "evaluate_apart",
+    "evaluate_each",
+    "install",
+]
 
 TIMED_OUT = "timed out"
 CRASHED = "crashed"
@@ -141,6 +149,11 @@ def evaluate_apart(request: Mapping[str, Any]) -> dict[str, Any]:
         # A process without requests for a while may have ended just then.
         if answer.late or not old or (answer.asked and answer.status != 0):
             return _case(answer, seconds)
+
+
+def evaluate_each(requests: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:
+    """The answers to requests, one after the other; see :func:`evaluate_apart`."""
+    return [evaluate_apart(request) for request in requests]
 
 
 def end_workers() -> None:

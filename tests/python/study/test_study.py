@@ -442,7 +442,7 @@ method = "{method}"
     return study.optimize(study.read(folder / "tank.toml"), folder / "tank.sqlite")
 
 
-@pytest.mark.parametrize(("method", "most"), [("slsqp", 30), ("trust-constr", 120)])
+@pytest.mark.parametrize(("method", "most"), [("slsqp", 30), ("trust-constr", 30)])
 def test_the_open_tank_of_least_sheet(tmp_path, method, most):
     # Of volume 4: 2 by 2 by 1, 12 of sheet.
     best = tank(tmp_path, method)
@@ -469,18 +469,20 @@ def test_an_objective_of_an_analysis_needs_a_method_by_values(tmp_path):
     assert math.isclose(best.outputs["drag"], 2.0, abs_tol=1e-3)
 
 
-def test_the_example_has_the_least_area_at_its_displacement(tmp_path):
+@pytest.mark.parametrize("method", ["slsqp", "trust-constr"])
+def test_the_example_has_the_least_area_at_its_displacement(tmp_path, method):
     """All 20 coordinates when there is time, else the four of the midship section."""
     root = Path(__file__).parents[3] / "examples" / "studies"
     definition = study.read(root / "least_area.toml")
     if not SOAK:
         chosen = tuple(i for i in definition.inputs if i.name.startswith(("C3", "C4", "C2.z")))
         definition = replace(definition, inputs=chosen, constraints=definition.constraints[:1])
+    definition = replace(definition, goal=replace(definition.goal, method=method))
     best = study.optimize(definition, tmp_path / "least.sqlite")
     assert best.converged and best.feasible and best.evaluations <= 30
     assert abs(best.outputs["volume"] - 7.5) < 1e-5
     if SOAK:
-        assert abs(best.outputs["area"] - 19.42041) < 2e-5
+        assert abs(best.outputs["area"] - 19.42041) < (2e-5 if method == "slsqp" else 5e-5)
         assert abs(best.outputs["lcb"] - 4.95) < 1e-5 and best.outputs["length"] > 9 - 1e-5
     with study.Store(tmp_path / "least.sqlite") as store:
         seen = list(store.outcomes())
@@ -665,8 +667,8 @@ def test_a_cluster_gives_the_same_table(tmp_path):
 class OtherVersion(ThreadPoolExecutor):
     """An executor whose workers take the request of another version for theirs."""
 
-    def submit(self, function, request):
-        return super().submit(function, {**request, "version": "0.0.9"})
+    def submit(self, function, requests):
+        return super().submit(function, [{**each, "version": "0.0.9"} for each in requests])
 
 
 def test_workers_of_another_version_end_the_run(tmp_path):

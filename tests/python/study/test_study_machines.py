@@ -8,6 +8,8 @@ import shutil
 import stat
 import subprocess
 import sys
+from collections.abc import Callable
+from concurrent.futures import Future, ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
 
@@ -45,6 +47,44 @@ def test_one_table_by_all_engines(tmp_path: Path) -> None:
     assert kept >= count // 3 and (left[0] if left else 0) == count - kept
     pytest.importorskip("distributed")
     assert by_dask(definition, tmp_path / "dask.sqlite", count) == serial.csv()
+
+
+class Bundling(ThreadPoolExecutor):
+    """An executor that is given short cases together, and loses each call with one of them."""
+
+    bundle = 8
+
+    def __init__(self, lost: float) -> None:
+        super().__init__(2)
+        self.lost = lost
+        self.calls: list[list[float]] = []
+
+    def submit(  # type: ignore[override]
+        self, function: Callable[..., Any], requests: list[dict[str, Any]]
+    ) -> Future[Any]:
+        self.calls.append([request["inputs"]["a"] for request in requests])
+        if self.lost not in self.calls[-1]:
+            return super().submit(function, requests)
+        gone: Future[Any] = Future()
+        gone.set_exception(OSError("the machine is gone"))
+        return gone
+
+
+def test_a_case_that_loses_its_machine_costs_no_other_one(tmp_path: Path) -> None:
+    definition = study.read(written(tmp_path, 64))
+    serial = study.sweep(definition, tmp_path / "serial.sqlite", processes=1)
+    at = int(np.flatnonzero(serial.done)[-1])
+    executor = Bundling(float(serial.inputs["a"][at]))
+    found = study.sweep(definition, tmp_path / "lossy.sqlite", executor=executor)
+    assert 1 < max(map(len, executor.calls)) <= Bundling.bundle
+    # Together with others once at most, then alone.
+    assert [len(call) for call in executor.calls if executor.lost in call][1:] == [1, 1, 1]
+    assert found.state[at] == "crashed"
+    others = np.arange(64) != at
+    assert (found.state == serial.state)[others].all()
+    assert np.array_equal(
+        found.outputs["twice"][others], serial.outputs["twice"][others], equal_nan=True
+    )
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="copies of processes are of Linux")
