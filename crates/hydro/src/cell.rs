@@ -69,6 +69,17 @@ impl<T: Real> PolynomialCell<T> {
         }
     }
 
+    /// The corners of a panel of three.
+    pub(crate) fn triangle(&self) -> Option<[Vec3<T>; 3]> {
+        let three = self.degree == [1, 1] && self.net[1].re() == self.net[3].re();
+        three.then(|| [self.net[0], self.net[2], self.net[3]])
+    }
+
+    /// A part of a triangle, in its plane and of its sense.
+    pub(crate) fn part_of_triangle(&self, [a, b, c]: [Vec3<T>; 3]) -> Self {
+        Self { reversed: self.reversed, fit: self.fit, ..Self::of_panel([a, b, c, c]) }
+    }
+
     pub(crate) fn degree(&self) -> [usize; 2] {
         self.degree
     }

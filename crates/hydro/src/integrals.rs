@@ -329,7 +329,7 @@ pub(crate) fn immersed<T: Real>(
 /// Quadrature points on cut strips: along w, and across.
 const OUTER: [usize; 2] = [14, 10];
 
-/// On those of panels, where the cut is a smooth function of w up to both ends: exact for plane ones.
+/// On those of panels, where the cut is a smooth function of w up to both ends; exact for triangles.
 const OUTER_BILINEAR: [usize; 2] = [6, 4];
 
 fn part<T: Real>(

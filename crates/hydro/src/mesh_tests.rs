@@ -3,6 +3,7 @@
 use crate::{Body, Hydrostatics, Symmetry};
 use moldloft_mesh::{Mesh, PatchInfo, Tag, TopologyBuilder};
 use moldloft_num::{Dual, Dual4, Real, Vec3};
+use moldloft_testing::{Random, soak};
 use std::f64::consts::PI;
 
 /// The accuracy of the figures of panels that the water cuts.
@@ -271,4 +272,52 @@ fn the_derivative_of_the_volume_by_the_level_is_the_waterplane() {
     let area = h.waterplane.unwrap().area.re;
     // Cut warped panels change their shape a little with the cut.
     assert!((h.volume.eps[0] / area - 1.0).abs() < 1e-3, "{} {area}", h.volume.eps[0]);
+}
+
+/// A corner that a plane cuts off a tetrahedron is the share s1 s2 s3 of it, with the centre of a
+/// tetrahedron.
+#[test]
+fn a_corner_of_a_tetrahedron_exactly() {
+    let mut random = Random::new(5);
+    for _ in 0..if soak() { 5000 } else { 200 } {
+        let mut point = || Vec3::from([(); 3].map(|()| random.between(-1.0, 1.0)));
+        let mut p: [Vec3; 4] = [(); 4].map(|()| point());
+        let whole = (p[1] - p[0]).cross(p[2] - p[0]).dot(p[3] - p[0]) / 6.0;
+        if whole < 0.0 {
+            p.swap(1, 2);
+        }
+        let whole = whole.abs();
+        p.sort_by(|a, b| a.z.total_cmp(&b.z));
+        let reversed = (p[1] - p[0]).cross(p[2] - p[0]).dot(p[3] - p[0]) < 0.0;
+        let level = random.between(p[0].z, p[3].z);
+        let faces = [[0, 2, 1, 1], [0, 1, 3, 3], [1, 2, 3, 3], [2, 0, 3, 3]];
+        let panels = faces.map(|f| f.map(|k: usize| p[k]));
+        let panels = panels.map(|[a, b, c, _]| if reversed { [a, c, b, b] } else { [a, b, c, c] });
+        let none: [crate::HullSide<'_, f64>; 0] = [];
+        let body = Body::new(&none, panels, Vec::new(), 4.0, FINE).unwrap();
+        let h = crate::hydrostatics(&body, level, Symmetry::None, 1.0);
+        // The corner below, or that above.
+        let alone = match level {
+            z if z < p[1].z => Some((p[0], [p[1], p[2], p[3]])),
+            z if z > p[2].z => Some((p[3], [p[0], p[1], p[2]])),
+            _ => None,
+        };
+        assert!(h.closure_error < 1e-9 * whole.max(1e-3) / h.volume && h.outward, "{h:?}");
+        let Some((top, others)) = alone else { continue };
+        let ends = others.map(|q| top + (q - top) * ((level - top.z) / (q.z - top.z)));
+        let [a, b, c] = ends.map(|q| q - top);
+        let cap = a.cross(b).dot(c).abs() / 6.0;
+        let volume = if top.z < level { cap } else { whole - cap };
+        assert!((h.volume - volume).abs() < 1e-14, "{} {volume}", h.volume);
+        let plane = h.waterplane.unwrap();
+        let area = (ends[1] - ends[0]).cross(ends[2] - ends[0]).z.abs() / 2.0;
+        assert!(
+            (plane.area - area).abs() < 1e-13 && h.waterplane_error * area < 1e-13,
+            "{plane:?} {area}"
+        );
+        if top.z < level && cap > 1e-6 {
+            let centre = top + (a + b + c) / 4.0;
+            assert!(h.buoyancy_centre.unwrap().distance(centre) < 1e-8);
+        }
+    }
 }

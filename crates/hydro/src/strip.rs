@@ -86,6 +86,10 @@ pub(crate) fn strips<T: Real>(
             out.push(Strip { cell, inner, from: T::zero(), to: T::one(), wet });
             continue;
         }
+        if let Some(corners) = cell.triangle() {
+            cut_triangle(&cell, corners, cut, out);
+            continue;
+        }
         let least = if depth < STEEP_TO { STEEP } else { 0.0 };
         if let Some(inner) = ordered(&heights, cell.degree(), least) {
             cut_cell(&cell, inner, &heights, cut, out);
@@ -107,6 +111,38 @@ pub(crate) fn strips<T: Real>(
         }
     }
     undecided
+}
+
+/// The parts of a triangle below the plane, which cuts it: exact, with an edge along the cut.
+fn cut_triangle<T: Real>(
+    cell: &PolynomialCell<T>,
+    corners: [Vec3<T>; 3],
+    cut: CoordinatePlane<T>,
+    out: &mut Vec<Strip<T>>,
+) {
+    let height = |p: Vec3<T>| p[cut.axis] - cut.level;
+    let wet = corners.map(|p| height(p).re() < 0.0);
+    let below = wet.iter().filter(|&&w| w).count() == 2;
+    // The corner on one side of the plane, and the two on the other.
+    let first = wet.iter().position(|&w| w != below).unwrap_or(0);
+    let [p, q, r] = [0, 1, 2].map(|k| corners[(first + k) % 3]);
+    let crossing = |other: Vec3<T>| {
+        let (h, k) = (height(p), height(other));
+        let mut at = (p + (other - p) * (h / (h - k))).to_array();
+        at[cut.axis] = cut.level;
+        Vec3::from(at)
+    };
+    let (on_q, on_r) = (crossing(q), crossing(r));
+    let mut piece = |corners: [Vec3<T>; 3], wet: Wet| {
+        let cell = Arc::new(cell.part_of_triangle(corners));
+        out.push(Strip { cell, inner: 1, from: T::zero(), to: T::one(), wet });
+    };
+    if below {
+        piece([on_r, on_q, q], Wet::After);
+        piece([q, r, on_r], Wet::All);
+    } else {
+        piece([on_q, on_r, p], Wet::After);
+    }
 }
 
 /// The edges of a wet cell in the plane, which are part of the waterline: the parameter across, and
