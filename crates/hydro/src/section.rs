@@ -7,6 +7,11 @@ use moldloft_num::{Real, Vec3, gauss_rule};
 /// Samples of a function along a cut from which a root or extremum is searched for.
 const LOOKS: usize = 16;
 
+/// Samples along the cut of a strip, whose ends suffice where it is straight.
+fn looks<T: Real>(strip: &Strip<T>) -> usize {
+    if strip.cell.triangle().is_some() { 1 } else { LOOKS }
+}
+
 /// Quadrature points along a piece of a section.
 const POINTS: usize = 16;
 
@@ -51,8 +56,9 @@ pub fn section_area<T: Real>(body: &Body<T>, station: T, level: T) -> [T; 2] {
 fn under_water<T: Real>(strip: &Strip<T>, cut: CoordinatePlane<T>, level: T) -> Vec<[T; 2]> {
     let mut line = StripLine::default();
     let mut height = |w: T| strip.cut_at(w, cut, &mut line).p.z - level;
+    let looks = looks(strip);
     let place = |k: usize| {
-        let s = k as f64 / LOOKS as f64;
+        let s = k as f64 / looks as f64;
         let sine = libm::sin(std::f64::consts::FRAC_PI_2 * s);
         strip.from + (strip.to - strip.from) * (sine * sine)
     };
@@ -62,7 +68,7 @@ fn under_water<T: Real>(strip: &Strip<T>, cut: CoordinatePlane<T>, level: T) -> 
     if last.1.re() < 0.0 {
         start = Some(strip.from);
     }
-    for k in 1..=LOOKS {
+    for k in 1..=looks {
         let w = place(k);
         let z = height(w);
         if (z.re() < 0.0) != (last.1.re() < 0.0) {
@@ -121,32 +127,33 @@ pub(crate) fn waterline_extent<T: Real>(
     let mut line = StripLine::default();
     for strip in strips {
         let (a, b) = (strip.from.re(), strip.to.re());
+        let looks = looks(strip);
         let place = |k: usize| {
-            let s = k as f64 / LOOKS as f64;
+            let s = k as f64 / looks as f64;
             let sine = libm::sin(std::f64::consts::FRAC_PI_2 * s);
             a + (b - a) * sine * sine
         };
         let w_of = |k: usize| match k {
             0 => strip.from,
-            LOOKS => strip.to,
+            k if k == looks => strip.to,
             k => T::from(place(k)),
         };
         let points: Vec<Vec3<T>> =
-            (0..=LOOKS).map(|k| strip.cut_at(w_of(k), cut, &mut line).p).collect();
+            (0..=looks).map(|k| strip.cut_at(w_of(k), cut, &mut line).p).collect();
         for (m, best) in best.iter_mut().enumerate() {
             let (axis, sign) = (m / 2, if m % 2 == 0 { 1.0 } else { -1.0 });
             let at = |k: usize| sign * points[k][axis].re();
-            let k = (0..=LOOKS).fold(0, |n, k| if at(k) < at(n) { k } else { n });
+            let k = (0..=looks).fold(0, |n, k| if at(k) < at(n) { k } else { n });
             // Between the samples the extremum exceeds them by at most the steps between them.
-            let step = [k.saturating_sub(1), (k + 1).min(LOOKS)]
+            let step = [k.saturating_sub(1), (k + 1).min(looks)]
                 .iter()
                 .fold(0.0f64, |s, &n| s.max((at(n) - at(k)).abs()));
             if best.is_some_and(|(b, _)| at(k) - step > b) {
                 continue;
             }
             let mut value = points[k][axis];
-            let (low, high) = (place(k.saturating_sub(1)), place((k + 1).min(LOOKS)));
-            if high > low {
+            let (low, high) = (place(k.saturating_sub(1)), place((k + 1).min(looks)));
+            if high > low && looks > 1 {
                 let mut f = |w: f64| sign * strip.cut_at(T::from(w), cut, &mut line).p[axis].re();
                 let w = least(&mut f, low, high);
                 if f(w) < sign * value.re() {
