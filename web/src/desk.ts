@@ -126,6 +126,8 @@ export class Desk {
   private decided = 0
   /** Whether what is drawn is not decided. */
   private previewed = false
+  /** Whether the slider has moved since a tolerance was decided. */
+  private slid = false
   private readonly sliding = new Newest<{ command: string; final: boolean; decided: number }>(
     async ({ command, final, decided }) => {
       if (decided !== this.decided) return
@@ -156,6 +158,9 @@ export class Desk {
     })
     this.slider.addEventListener('input', () => this.slide())
     this.slider.addEventListener('change', () => void this.settleTolerance())
+    // A slide that ends where it began is no change.
+    for (const end of ['pointerup', 'pointercancel', 'blur'])
+      this.slider.addEventListener(end, () => setTimeout(() => this.slid && this.undecided()))
     this.element.append(
       this.bar,
       this.cutting.element,
@@ -666,6 +671,7 @@ export class Desk {
   private slide(): void {
     if (!this.session) return
     const value = this.tolerance()
+    this.slid = true
     this.value.value = String(value)
     this.sliding.push({ command: this.command(value), final: false, decided: this.decided })
     clearTimeout(this.timer)
@@ -677,6 +683,7 @@ export class Desk {
 
   private async settleTolerance(): Promise<void> {
     if (!this.session) return
+    this.slid = false
     clearTimeout(this.timer)
     this.timer = 0
     await this.run(this.command(this.tolerance()))
@@ -763,7 +770,14 @@ export class Desk {
   private release(): void {
     const given = this.pressed?.command
     this.pressed = null
-    if (!given) return
+    if (given) this.undecided()
+  }
+
+  /** Shows what is decided, in place of what a slider or a drag has drawn. */
+  private undecided(): void {
+    this.slid = false
+    clearTimeout(this.timer)
+    this.timer = 0
     void this.later(async () => {
       await this.sliding.settled()
       if (this.session) this.take((await this.ask('desk_show')) as DeskFacts)

@@ -360,6 +360,32 @@ def test_an_object_of_the_model_and_a_lost_process(desk: Callable[..., DeskHand]
     assert not d.faults
 
 
+def test_a_slide_that_ends_where_it_began_changes_nothing(desk: Callable[..., DeskHand]) -> None:
+    d = desk()
+    d.table("rail.csv", csv(rail()))
+    d.slide(0.7)
+
+    def shown() -> dict[str, Any]:
+        return {name: x for name, x in d.look()["facts"].items() if name != "id"}
+
+    before, log = shown(), d.look()["log"]
+    slider = d.page.get_by_label("tolerance", exact=True)
+    box, value = slider.bounding_box(), slider.input_value()
+    assert box is not None
+    x, y = box["x"] + 8 + 0.7 * (box["width"] - 16), box["y"] + box["height"] / 2
+    d.page.mouse.move(x, y)
+    d.page.mouse.down()
+    d.page.mouse.move(x - 30, y)
+    d.until(lambda: slider.input_value() != value and shown() != before)
+    d.page.mouse.move(x, y)
+    assert slider.input_value() == value
+    d.page.mouse.up()
+    d.settle()
+    d.until(lambda: shown() == before)
+    assert d.look()["log"] == log
+    assert not d.faults
+
+
 def arguments(pid: int) -> list[str]:
     """The words that a process was started with."""
     return Path(f"/proc/{pid}/cmdline").read_text(encoding="utf-8").split("\0")
