@@ -83,7 +83,7 @@ pub fn arguments<'py>(
 ) -> PyResult<Bound<'py, pyo3::types::PyDict>> {
     let dict = pyo3::types::PyDict::new(py);
     for (field, value) in object.row.fields.iter().zip(&object.args) {
-        let name: &str = &field.name;
+        let name: &str = field.name;
         dict.set_item(name, argument(py, graph, value)?)?;
     }
     Ok(dict)
