@@ -1,9 +1,9 @@
 //! A body: the cells of its skin, its open rims, and bounds on the distance between cells and
 //! surfaces.
 
+use crate::attitude::Attitude;
 use crate::bernstein::halves;
 use crate::cell::{FitLimits, PolynomialCell, cells_of};
-use crate::flotation::Attitude;
 use crate::folds::fold;
 use crate::integrals::{HalvedCell, HydrostaticIntegrals, Immersed, Wanted, immersed};
 use crate::moments::BodyMoments;
@@ -235,6 +235,14 @@ impl<T: Real> Body<T> {
             accuracy: self.accuracy,
             moments: OnceLock::new(),
             real: OnceLock::new(),
+        }
+    }
+
+    /// The body in earth axes.
+    pub fn turned(&self, attitude: Attitude<T>) -> Self {
+        match attitude.rotation() {
+            Some(place) => self.mapped(place, false),
+            None => self.clone(),
         }
     }
 

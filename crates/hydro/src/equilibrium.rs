@@ -291,7 +291,7 @@ impl<'m> EquilibriumProblem<'m, f64> {
         let (mut low, mut high) = (low, high + 1e-9 * self.size);
         // An open body displaces no more once its rim is immersed.
         let half = self.water.symmetry != Symmetry::None;
-        let rims = attitude.turned(&self.body.rims_alone());
+        let rims = self.body.rims_alone().turned(attitude);
         let full = rims.lowest_rim(half).map_or(high, |z| z.min(high));
         let when_full = volume(full).0;
         let most = if full < high { when_full.max(volume(high).0) } else { when_full } + wanted;

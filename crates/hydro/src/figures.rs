@@ -1,6 +1,6 @@
 //! The hydrostatic figures of a body below a water plane z = level.
 
-use crate::Attitude;
+use crate::attitude::Attitude;
 use crate::body::Body;
 use crate::hydrostatics::{FormCoefficients, Hydrostatics, Symmetry, VolumeForms, Waterplane};
 use crate::integrals::{Immersed, Wanted};
@@ -62,7 +62,7 @@ pub(crate) fn floating<T: Real>(
     symmetry: Symmetry,
     density: f64,
 ) -> Floating<T> {
-    let turned = attitude.turned(body);
+    let turned = body.turned(attitude);
     let origin = origin_of(&turned, symmetry).map(T::from);
     let all = body.immersed_at(attitude, origin, Wanted::All, body.quadrature_accuracy());
     of_integrals(&turned, origin, attitude.level, symmetry, density, &all)

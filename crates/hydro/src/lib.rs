@@ -10,6 +10,7 @@
 
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 
+mod attitude;
 mod bernstein;
 mod body;
 mod cell;
@@ -29,11 +30,12 @@ mod section;
 mod strip;
 mod trimmed;
 
+pub use attitude::Attitude;
 pub use body::{Body, BodyMeasures, HullSide, USUAL_ACCURACY, part_measures, surface_measures};
 pub use cell::PolynomialCell;
 pub use equilibrium::{Equilibrium, FloatError, Loading, Status, equilibrium};
 pub use figures::hydrostatics;
-pub use flotation::{Attitude, Flotation, Water, bottom, bounds, flotation};
+pub use flotation::{Flotation, Water, bottom, bounds, flotation};
 pub use hydrostatics::{FormCoefficients, Hydrostatics, Symmetry, VolumeForms, Waterplane};
 pub use measures::{curve_measures, solid_measures};
 pub use pulled::{PulledBody, pull_hydrostatics};

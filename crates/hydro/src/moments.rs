@@ -1,9 +1,9 @@
 //! Moments of whole cells in the axes of the body: below the water at every attitude they give the
 //! integrals by the rotation alone, so that only the cells at the waterline are integrated anew.
 
+use crate::attitude::Attitude;
 use crate::bernstein::{Row, basis};
 use crate::cell::PolynomialCell;
-use crate::flotation::Attitude;
 use crate::integrals::{HydrostaticIntegrals, points};
 use moldloft_num::{Box3, Real, Vec3, gauss_rule};
 use moldloft_parallel::prelude::*;

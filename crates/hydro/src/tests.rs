@@ -227,7 +227,7 @@ fn two_ways_to_the_integrals_of_a_turned_body_agree() {
             _ => ellipsoid([dual(1.0, 4.0, 0), dual(0.4, 2.0, 1), 1.0.into()], Vec3::zero(), 1e-7),
         };
         let found = integrals(&body, attitude, origin);
-        let turned = attitude.turned(&body);
+        let turned = body.turned(attitude);
         let accuracy = body.quadrature_accuracy();
         let other = turned.wanted_integrals(attitude.level, origin, Wanted::All, accuracy);
         let errors = [0, 2].map(|k| found.errors[k] + other.errors[k]);

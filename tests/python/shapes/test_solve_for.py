@@ -96,7 +96,8 @@ def numbers_of(m: Any) -> list[str]:
             x = m.eval(text)
         except Error:
             continue
-        if isinstance(x, float) and x != 0:
+        # Not one that is zero but for rounding, such as the LCB of a body that is symmetric.
+        if isinstance(x, float) and abs(x) > 1e-12:
             found.append(text)
     return found
 

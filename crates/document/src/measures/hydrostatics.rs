@@ -103,7 +103,7 @@ impl Document {
             for across in signs('y') {
                 let Attitude { level, trim, heel } = attitude;
                 let turned = Attitude { level, trim: lengthwise * trim, heel: across * heel };
-                let body = turned.turned(&bodied.body);
+                let body = bodied.body.turned(turned);
                 for (area, (_, cells)) in areas.iter_mut().zip(&parts) {
                     *area += body.wetted_area(cells.clone(), level);
                 }
